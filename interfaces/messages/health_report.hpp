@@ -18,9 +18,38 @@ enum class ExtendedQualifier : std::uint8_t {
   kBlocked = 5,
   kBeginningBlockage = 6,
   kExternalDisturbance = 7,
-  kInitialising = 8,  ///< not running long enough to be judged
+  kInitialising = 8,  ///< not tested yet: no data so far, or the mounting was never verified
   kWrongInput = 9,    ///< an input contradicts the vehicle file: SensorHealth::finding. Not a misalignment
 };
+
+/// What the health service tests for one radar: bits of SensorHealth::failed_events and untested_events. Each is an
+/// event with a trouble code in the fault memory. The worst effect comes first; among equal ones, what a workshop must
+/// repair.
+enum class RadarEvent : std::uint8_t {
+  kDefective = 0,
+  kBlocked = 1,
+  kNoData = 2,
+  kYawBeyondLimit = 3,
+  kPitchBeyondLimit = 4,
+  kRollBeyondLimit = 5,
+  kWrongInput = 6,
+  kYawMisaligned = 7,
+  kPitchMisaligned = 8,
+  kRollMisaligned = 9,
+  kPartlyBlocked = 10,
+  kRejectedData = 11,
+  kSuspectData = 12,
+  kRateReduced = 13,
+  kSupply = 14,  // from here on without effect on the verdict
+  kTemperature = 15,
+  kUnsynchronised = 16,
+  kWithoutEgoMotion = 17,
+};
+inline constexpr std::size_t kNumberOfRadarEvents = 18;
+
+[[nodiscard]] constexpr std::uint32_t bit_of(RadarEvent event) {
+  return 1u << static_cast<unsigned>(event);
+}
 
 /// Misalignment of one axis against its tolerance.
 struct AxisHealth {
@@ -58,8 +87,10 @@ struct SensorHealth {
   /// Effect of the misalignment (Burza 2025, §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
-  std::uint32_t conditions;    ///< source_condition bits: the sensor's latest self-diagnosis
-  std::uint32_t step_changes;  ///< sudden changes of the mounting since the estimator's start
+  std::uint32_t conditions;       ///< source_condition bits: the sensor's latest self-diagnosis
+  std::uint32_t failed_events;    ///< RadarEvent bits: tests whose last known result is a failure
+  std::uint32_t untested_events;  ///< RadarEvent bits: tests without a result that still counts
+  std::uint32_t step_changes;     ///< sudden changes of the mounting since the estimator's start
   std::uint64_t scans;
   std::uint64_t lost_scans;     ///< published by the gateway, not received by the health service
   std::uint64_t missed_scans;   ///< sent according to the sensor's counter, but not received completely
@@ -69,7 +100,7 @@ struct SensorHealth {
   std::uint64_t e2e_repeated;  ///< messages with the previous counter, dropped
   std::uint64_t e2e_wrong;     ///< messages with a wrong CRC, length, Data ID or sequence, dropped
 };
-static_assert(sizeof(SensorHealth) == 192);
+static_assert(sizeof(SensorHealth) == 200);
 
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< no heartbeat yet
@@ -102,7 +133,7 @@ static_assert(sizeof(ServiceHealth) == 64);
 inline constexpr std::size_t kMaxServices = 16;
 
 struct HealthReport {
-  static constexpr std::uint32_t kVersion = 4;
+  static constexpr std::uint32_t kVersion = 5;
 
   MessageHeader header;
   DataQualifier overall;
@@ -111,7 +142,7 @@ struct HealthReport {
   std::uint32_t number_of_services;
   float latency_p50_ms;  ///< reception to track list, over the last supervision window
   float latency_max_ms;
-  std::uint32_t reserved2;
+  std::uint32_t stored_events;          ///< events in the fault memory that are confirmed or pending
   AlignmentVehicleChange load_change;   ///< of the vehicle: the latest that an estimate reported
   AlignmentVehicleChange speed_change;  //
   std::array<SensorHealth, kMaxRadars> sensors;
@@ -119,6 +150,6 @@ struct HealthReport {
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 192 + kMaxServices * 64);
+static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 200 + kMaxServices * 64);
 
 }  // namespace boresight

@@ -33,6 +33,8 @@ inline constexpr std::uint32_t kSupply = 1u << 3;            ///< voltage out of
 inline constexpr std::uint32_t kTemperature = 1u << 4;       ///< temperature out of range
 inline constexpr std::uint32_t kUnsynchronised = 1u << 5;    ///< its clock is not synchronised to another one
 inline constexpr std::uint32_t kWithoutEgoMotion = 1u << 6;  ///< it lacks the vehicle's motion as input
+/// The sensor has reported its self-diagnosis since the gateway's start. Without this bit the others say nothing.
+inline constexpr std::uint32_t kReported = 1u << 31;
 }  // namespace source_condition
 
 /// Statistics of one radar as the writer of this status saw it; only the gateway fills them.

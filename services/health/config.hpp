@@ -7,8 +7,22 @@
 
 namespace boresight::health {
 
+/// What begins an operation cycle of the fault memory.
+enum class OperationCycle : std::uint8_t {
+  kBoot,   ///< a boot of the ECU
+  kStart,  ///< a start of the service
+};
+
+struct FaultStoreConfig {
+  bool enabled = true;
+  /// "": the file `fault_memory` in systemd's $STATE_DIRECTORY; without that variable nothing is stored.
+  std::string path;
+  OperationCycle operation_cycle = OperationCycle::kBoot;
+};
+
 struct FileConfig {
   Config supervision;
+  FaultStoreConfig fault_store;
   dds::Config dds;
 };
 

@@ -3,8 +3,10 @@
 
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/service_main.hpp"
+#include "services/common/runtime/version.hpp"
 #include "services/health/config.hpp"
 #include "services/health/core/supervision.hpp"
+#include "services/health/fault_store.hpp"
 #include "services/health/outlet.hpp"
 
 using namespace boresight;
@@ -13,11 +15,16 @@ namespace {
 
 constexpr std::int64_t kJudgePeriod_ns = 20'000'000;
 
-int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileConfig& config) {
+int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileConfig& config,
+        std::uint64_t configuration, const dds::CommandKey& key) {
   health::Supervision supervision(vehicle, config.supervision, runtime::monotonic_now_ns());
-  health::Outlet outlet(node, vehicle, config.dds);
+  supervision.set_origin(configuration, runtime::software_version());
+  health::FaultStore store(node, supervision.faults(), config.fault_store);
+  supervision.restored();
+  health::Outlet outlet(node, vehicle, config.dds, supervision.faults(), key);
   runtime::Publisher<HealthReport> reports(node);
   node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<EgoMotion>([&](const EgoMotion& m) { supervision.observe(m); });
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });
   node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
   node.on<TrackList>([&](const TrackList& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
@@ -29,7 +36,9 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   // A changed verdict is sent at once: otherwise a silent radar would be reported up to a period after its deadline.
   node.every(kJudgePeriod_ns, [&] {
     const std::int64_t now_ns = runtime::monotonic_now_ns();
-    supervision.judge(*current, now_ns);
+    supervision.judge(*current, now_ns, runtime::realtime_now_ns());
+    store.keep(now_ns);
+    outlet.serve(now_ns);
     const bool changed = health::verdicts_differ(*current, *sent);
     if (!changed && now_ns < next_ns) return;
     next_ns = now_ns + period_ns - kJudgePeriod_ns / 2;
@@ -42,7 +51,9 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
     reports.publish(origin, [&](HealthReport& out) { out = *sent; });
     outlet.write(*sent, changed, now_ns);
   });
-  return node.spin();
+  const int exit_code = node.spin();
+  store.finish();
+  return exit_code;
 }
 
 }  // namespace
@@ -52,6 +63,10 @@ int main(int argc, char** argv) {
       catalogue::Service::kHealth, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
         const VehicleConfig vehicle = files.vehicle();
         const health::FileConfig config = health::read_config(config::Reader::open(files.service_file("health")));
-        return [vehicle, config](runtime::Node& node) { return run(node, vehicle, config); };
+        const std::uint64_t configuration = health::configuration_fingerprint(files);
+        const dds::CommandKey key = health::command_key_of(config.dds);
+        return [vehicle, config, configuration, key](runtime::Node& node) {
+          return run(node, vehicle, config, configuration, key);
+        };
       });
 }

@@ -3,30 +3,55 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "services/common/runtime/node.hpp"
 #include "services/common/vehicle/vehicle.hpp"
+#include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/dds/diagnostics_writer.hpp"
+#include "services/health/dds/fault_memory_server.hpp"
+#include "services/health/dds/participant.hpp"
 
 namespace boresight::health {
+
+/// The secret of those who may command; empty if none is configured. Throws config::Error if its file cannot be used.
+[[nodiscard]] dds::CommandKey command_key_of(const dds::Config& config);
 
 /// Supervision on the ECU works without DDS. Each failure is reported as a fault of the node, and the participant is
 /// created again later.
 class Outlet {
  public:
-  Outlet(runtime::Node& node, const VehicleConfig& vehicle, const dds::Config& config)
-      : node_(node), vehicle_(vehicle), config_(config) {}
+  /// All references must outlive this object. `key`: the secret of those who may command.
+  Outlet(runtime::Node& node, const VehicleConfig& vehicle, const dds::Config& config, FaultMemory& faults,
+         dds::CommandKey key)
+      : node_(node), vehicle_(vehicle), config_(config), faults_(faults), key_(std::move(key)) {}
 
   /// Sends if `at_once`, or if the configured period has passed since the last report.
   void write(const HealthReport& report, bool at_once, std::int64_t now_ns);
+  /// Sends what changed in the fault memory, and executes commands that were received.
+  void serve(std::int64_t now_ns);
 
  private:
+  /// Everything that exists only with a participant.
+  struct Channel {
+    Channel(const dds::Config& config, const VehicleConfig& vehicle, FaultMemory& faults, const dds::CommandKey& key)
+        : participant(config, "boresight-health"),
+          reports(participant, vehicle),
+          faults(participant, vehicle, faults, key) {}
+    dds::Participant participant;  // first member: it outlives its writers
+    dds::DiagnosticsWriter reports;
+    dds::FaultMemoryServer faults;
+  };
+
   void open(std::int64_t now_ns);
+  void report_mute(bool is_mute, std::int64_t now_ns);
 
   runtime::Node& node_;
   const VehicleConfig& vehicle_;
   const dds::Config& config_;
-  std::optional<dds::DiagnosticsWriter> writer_;
+  FaultMemory& faults_;
+  dds::CommandKey key_;
+  std::optional<Channel> channel_;
   std::int64_t next_ns_ = 0;
   std::int64_t retry_ns_ = 0;
 };

@@ -14,8 +14,7 @@ LoadedMemory load_memory(const std::filesystem::path& file, const Identity& iden
     loaded.reason = read.reason;
     return loaded;
   }
-  loaded.verdict =
-      decode_memory(std::span(bytes.data(), read.size), identity, loaded.memory, loaded.rejected_radars);
+  loaded.verdict = decode_memory(std::span(bytes.data(), read.size), identity, loaded.memory, loaded.rejected_radars);
   if (loaded.verdict == MemoryVerdict::kTaken) {
     loaded.kind = LoadedMemory::Kind::kTaken;
     return loaded;

@@ -106,6 +106,7 @@ std::string to_line(const diagnostics::SensorHealth& s) {
                                    alignment_words::speed_change_sentence(change_of(s.speed_change()))}) {
     if (!event.empty()) line += "  " + event;
   }
+  for (const std::string& code : s.trouble_codes()) line += "  " + text::printable(code);
   if (s.conditions() != 0) line += "  reported by the sensor: " + words_of_conditions(s.conditions());
   return line;
 }
@@ -118,6 +119,7 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   object["time_ns"] = s.time_ns();
   object["data_qualifier"] = word(s.data_qualifier());
   object["extended_qualifier"] = word(s.extended_qualifier());
+  object["trouble_codes"] = s.trouble_codes();
   object["explanation"] = s.explanation();
   object["reason"] = s.alignment_reason();
   object["finding"] = s.finding();

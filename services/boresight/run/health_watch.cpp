@@ -38,6 +38,7 @@ bool differ(const HealthResult& a, const HealthResult& b) {
 }  // namespace
 
 void HealthWatch::start(std::int64_t now_ns) {
+  faults_.emplace(vehicle_, config_.faults);
   for (const RadarConfig& radar : vehicle_.radars) {
     if (sensors_.size() < kMaxRadars) sensors_.emplace_back(radar, config_, now_ns);
   }
@@ -71,7 +72,7 @@ void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t o
 void HealthWatch::judge(std::int64_t own_ns, bool always, const Report& report) {
   HealthResult verdicts;
   verdicts.number_of_sensors = sensors_.size();
-  for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(own_ns);
+  for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(*faults_, own_ns, {});
   verdicts.overall = overall_of(verdicts);
   verdicts.load_change = load_change_;
   verdicts.speed_change = speed_change_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,7 @@ class HealthWatch {
 
   VehicleConfig vehicle_;
   health::Config config_;
+  std::optional<health::FaultMemory> faults_;  // of this drive
   std::vector<health::SensorMonitor> sensors_;
   AlignmentVehicleChange load_change_{}, speed_change_{};  ///< the latest that an estimate reported
   HealthResult reported_;

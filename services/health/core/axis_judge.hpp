@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "interfaces/messages/health_report.hpp"
 #include "services/health/core/config.hpp"
+#include "services/health/core/faults/debounce.hpp"
 
 namespace boresight::health {
 
@@ -26,44 +26,47 @@ class AxisJudge {
     const double margin = config_.confidence_sigma * std_rad;
     const bool clearly_beyond = std::abs(error_rad) - margin > tolerance_rad_;
     const bool clearly_within = std::abs(error_rad) + margin < config_.clear_ratio * tolerance_rad_;
-    if (beyond_ ? !clearly_within : !clearly_beyond) {
-      since_ns_ = kNever;
-      return;
-    }
-    // Without this a clock that jumped back would delay the verdict by the size of the jump.
-    if (since_ns_ == kNever || time_ns < since_ns_) since_ns_ = time_ns;
-    const double needed_s = beyond_ ? config_.clear_s : config_.set_s;
-    if (static_cast<double>(time_ns - since_ns_) * 1e-9 < needed_s) return;
-    beyond_ = !beyond_;
-    since_ns_ = kNever;
+    // A first verdict of within needs an estimate that can tell: its margin is smaller than the tolerance. After a
+    // verdict of beyond, also of an earlier process, only an axis that is clearly within passes.
+    const bool is_within = std::abs(error_rad) <= tolerance_rad_ && margin < tolerance_rad_;
+    const bool needs_clarity = is_beyond() || was_beyond_;
+    const bool passes =
+        std::isfinite(tolerance_rad_) && (needs_clarity ? clearly_within : is_within && !clearly_beyond);
+    const TestResult raw = clearly_beyond ? TestResult::kFailed : passes ? TestResult::kPassed : TestResult::kNone;
+    verdict_ = debounce_.update(raw, {.set_s = config_.set_s, .clear_s = config_.clear_s}, time_ns);
+    if (verdict_ != TestResult::kNone) was_beyond_ = false;
   }
 
   /// Withdraws the verdict and forgets the estimate: what it was made from is not to be believed.
   void clear() { *this = AxisJudge(config_, tolerance_rad_); }
+  /// The last known verdict, of an earlier process, is that the axis is beyond its tolerance.
+  void restore_beyond() { was_beyond_ = true; }
 
   [[nodiscard]] bool is_observable() const { return observable_; }
-  [[nodiscard]] bool is_beyond() const { return beyond_; }
+  /// Whether the axis is within its tolerance; kNone until the estimates have determined it.
+  [[nodiscard]] TestResult verdict() const { return verdict_; }
+  [[nodiscard]] bool is_beyond() const { return verdict_ == TestResult::kFailed; }
   /// Beyond tolerance, and so far that the data are not usable.
-  [[nodiscard]] bool is_inhibited() const { return beyond_ && std::abs(error_rad_) > config_.inhibit_rad; }
+  [[nodiscard]] bool is_inhibited() const { return is_beyond() && std::abs(error_rad_) > config_.inhibit_rad; }
   [[nodiscard]] AxisHealth health() const {
     return {.error_rad = static_cast<float>(error_rad_),
             .std_rad = static_cast<float>(std_rad_),
             .tolerance_rad = static_cast<float>(tolerance_rad_),
             .observable = observable_ ? std::uint8_t{1} : std::uint8_t{0},
-            .beyond_tolerance = beyond_ ? std::uint8_t{1} : std::uint8_t{0},
+            .beyond_tolerance = is_beyond() ? std::uint8_t{1} : std::uint8_t{0},
             .about_vehicle_axis = 0,
             .reserved = 0};
   }
 
  private:
-  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
   Config config_;
   double tolerance_rad_ = 0.0;
   double error_rad_ = 0.0;
   double std_rad_ = 0.0;
   bool observable_ = false;
-  bool beyond_ = false;
-  std::int64_t since_ns_ = kNever;  // first estimate that contradicts the present verdict
+  bool was_beyond_ = false;  // in an earlier process, and not judged yet in this one
+  TestResult verdict_ = TestResult::kNone;
+  Debounce debounce_;
 };
 
 }  // namespace boresight::health

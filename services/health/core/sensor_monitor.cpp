@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "services/common/geometry/so3.hpp"
 
@@ -25,6 +26,20 @@ double vehicle_tolerance(const RadarConfig& radar, Eigen::Index axis) {
   return (Eigen::Vector3d(t.yaw_rad, t.pitch_rad, t.roll_rad).array() / angles.array().max(1e-3)).minCoeff();
 }
 
+/// The verdict on an axis as the fault memory has it. If this process has no estimate of the axis, its values are those
+/// at the latest occurrence.
+void show_last_known(AxisHealth& axis, const FaultRecord* record, AlignmentParameter parameter) {
+  if (record == nullptr) return;
+  axis.beyond_tolerance = record->status.last == TestResult::kFailed ? 1 : 0;
+  if (axis.beyond_tolerance == 0 || axis.std_rad != 0.0F) return;
+  const auto i = static_cast<std::size_t>(parameter);
+  const std::size_t variance = i * kNumberOfAlignmentParameters - i * (i + 1) / 2 + i;  // in the upper triangle
+  const float error_rad = record->latest.estimate[i];
+  if (!std::isfinite(error_rad)) return;
+  axis.error_rad = error_rad;
+  axis.std_rad = std::sqrt(record->latest.covariance[variance]);
+}
+
 }  // namespace
 
 SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns)
@@ -40,6 +55,16 @@ SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std
       yaw_{{config, radar.tolerance.yaw_rad}, {config, vehicle_tolerance(radar, 2)}},
       pitch_{{config, radar.tolerance.pitch_rad}, {config, vehicle_tolerance(radar, 1)}},
       roll_{{config, radar.tolerance.roll_rad}, {config, vehicle_tolerance(radar, 0)}} {}
+
+Event SensorMonitor::event(RadarEvent radar_event) const {
+  return {kind_of(radar_event), static_cast<std::uint8_t>(radar_id_)};
+}
+
+TestResult SensorMonitor::Angle::verdict() const {
+  if (sensor.is_beyond() || vehicle.is_beyond()) return TestResult::kFailed;
+  const bool is_passed = sensor.verdict() == TestResult::kPassed || vehicle.verdict() == TestResult::kPassed;
+  return is_passed ? TestResult::kPassed : TestResult::kNone;
+}
 
 AxisHealth SensorMonitor::Angle::health() const {
   const bool by_vehicle = sensor.is_beyond() ? false : vehicle.is_beyond() || !sensor.is_observable();
@@ -83,6 +108,15 @@ void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
 }
 
 void SensorMonitor::observe(const AlignmentEstimate& estimate) {
+  has_estimate_ = true;
+  estimate_ = {estimate.speed_scale, estimate.alignment_yaw_rad, estimate.alignment_pitch_rad,
+               estimate.alignment_roll_rad};
+  std::size_t entry = 0;
+  for (std::size_t row = 0; row < kNumberOfAlignmentParameters; ++row) {
+    for (std::size_t column = row; column < kNumberOfAlignmentParameters; ++column) {
+      covariance_[entry++] = estimate.covariance[row * kNumberOfAlignmentParameters + column];
+    }
+  }
   reason_ = estimate.reason;
   finding_ = estimate.finding;
   finding_value_ = estimate.finding_value;
@@ -104,6 +138,7 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
 }
 
 void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now_ns) {
+  has_statistics_ = true;
   // A smaller counter is that of a new process, which counts from zero.
   const auto grown = [](std::uint64_t now, std::uint64_t before) { return now >= before ? now - before : now; };
   messages_.add(now_ns, grown(statistics.messages, last_statistics_.messages));
@@ -112,7 +147,7 @@ void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now
   last_statistics_ = statistics;
 }
 
-SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
+SensorHealth SensorMonitor::quantities(std::int64_t now_ns) {
   SensorHealth health{};
   health.radar_id = radar_id_;
   health.rate_hz = static_cast<float>(delivers(now_ns) ? rate_.rate_hz(now_ns) : 0.0);
@@ -130,54 +165,130 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   health.finding_radar = finding_radar_;
   health.range_rate_scale = range_rate_scale_;
   health.drift = drift_;
-  health.lateral_displacement_m = static_cast<float>(config_.reference_range_m * std::sin(health.yaw.error_rad));
   health.reference_range_m = static_cast<float>(config_.reference_range_m);
   health.scans = scans_;
   health.lost_scans = lost_scans_;
-  health.conditions = last_statistics_.conditions;
+  health.conditions = last_statistics_.conditions & ~source_condition::kReported;
   health.step_changes = step_changes_;
   health.missed_scans = last_statistics_.lost;
   health.suspect_scans = last_statistics_.suspect;
   health.e2e_lost = last_statistics_.e2e_lost;
   health.e2e_repeated = last_statistics_.e2e_repeated;
   health.e2e_wrong = last_statistics_.e2e_wrong;
+  return health;
+}
 
-  const bool misaligned = yaw_.is_beyond() || pitch_.is_beyond() || roll_.is_beyond();
-  const bool inhibited = yaw_.is_inhibited() || pitch_.is_inhibited() || roll_.is_inhibited();
+float SensorMonitor::lateral_displacement_m(const AxisHealth& yaw) const {
+  return static_cast<float>(config_.reference_range_m * std::sin(yaw.error_rad));
+}
+
+FreezeFrame SensorMonitor::frame_of(const SensorHealth& health, const FreezeFrame& vehicle) const {
+  FreezeFrame frame = vehicle;
+  frame.rate_hz = health.rate_hz;
+  frame.detections_per_scan = health.detections_per_scan;
+  frame.lateral_displacement_m = health.lateral_displacement_m;
+  frame.reference_range_m = health.reference_range_m;
+  frame.estimate = estimate_;
+  frame.covariance = covariance_;
+  return frame;
+}
+
+void SensorMonitor::test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit, const Angle& angle,
+                              std::int64_t now_ns, const FreezeFrame& frame) const {
+  if (finding_ != AlignmentFinding::kNone) {
+    // The angles were computed from a wrong input: neither an old nor a new verdict on them counts.
+    faults.withdraw(event(misaligned));
+    faults.withdraw(event(beyond_limit));
+    return;
+  }
+  const TestResult verdict = angle.verdict();
+  const TestResult limit = angle.is_inhibited()           ? TestResult::kFailed
+                           : verdict == TestResult::kNone ? TestResult::kNone
+                                                          : TestResult::kPassed;
+  faults.report(event(misaligned), verdict, now_ns, frame);
+  faults.report(event(beyond_limit), limit, now_ns, frame);
+}
+
+void SensorMonitor::test(FaultMemory& faults, std::int64_t now_ns, const SensorHealth& health,
+                         const FreezeFrame& vehicle) {
+  const FreezeFrame frame = frame_of(health, vehicle);
+  const auto report = [&](RadarEvent radar_event, bool is_tested, bool is_failed) {
+    const TestResult result = !is_tested ? TestResult::kNone : is_failed ? TestResult::kFailed : TestResult::kPassed;
+    faults.report(event(radar_event), result, now_ns, frame);
+  };
+  using namespace source_condition;
+  // The last status of a sensor stays valid while the sensor is silent.
+  const bool has_reported = (last_statistics_.conditions & kReported) != 0;
+  for (const auto& [radar_event, condition] :
+       {std::pair{RadarEvent::kDefective, kDefective}, std::pair{RadarEvent::kBlocked, kBlocked},
+        std::pair{RadarEvent::kPartlyBlocked, kPartlyBlocked}, std::pair{RadarEvent::kSupply, kSupply},
+        std::pair{RadarEvent::kTemperature, kTemperature}, std::pair{RadarEvent::kUnsynchronised, kUnsynchronised},
+        std::pair{RadarEvent::kWithoutEgoMotion, kWithoutEgoMotion}}) {
+    report(radar_event, has_reported, (health.conditions & condition) != 0);
+  }
+  const bool is_young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
+  report(RadarEvent::kNoData, !is_young, !delivers(now_ns));
   const double rejected = static_cast<double>(rejected_.sum(now_ns));
   const double published = static_cast<double>(messages_.sum(now_ns));
   const double suspect = static_cast<double>(suspect_.sum(now_ns));
-  const bool is_rejected = rejected > config_.max_rejected_ratio * (published + rejected);
-  const bool is_suspect = suspect > config_.max_suspect_ratio * published;
-  const auto reports = [&health](std::uint32_t condition) { return (health.conditions & condition) != 0; };
-  const auto verdict = [&health](DataQualifier effect, ExtendedQualifier reason) {
-    health.data_qualifier = effect;
-    health.extended_qualifier = reason;
-    return health;
-  };
-  // The worst effect first; for equal effects the reason that a workshop must repair. The sensor's last status also
-  // explains its silence, so it is tested before the delivery.
-  if (reports(source_condition::kDefective))
-    return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
-  if (reports(source_condition::kBlocked)) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kBlocked);
-  if (!delivers(now_ns)) {
-    if (is_rejected) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
-    const bool young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
-    return verdict(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
+  report(RadarEvent::kRejectedData, has_statistics_, rejected > config_.max_rejected_ratio * (published + rejected));
+  report(RadarEvent::kSuspectData, has_statistics_, suspect > config_.max_suspect_ratio * published);
+  report(RadarEvent::kRateReduced, delivers(now_ns) && rate_.is_full(now_ns),
+         health.rate_hz < config_.min_rate_ratio * expected_rate_hz_);
+  report(RadarEvent::kWrongInput, has_estimate_, finding_ != AlignmentFinding::kNone);
+  test_axis(faults, RadarEvent::kYawMisaligned, RadarEvent::kYawBeyondLimit, yaw_, now_ns, frame);
+  test_axis(faults, RadarEvent::kPitchMisaligned, RadarEvent::kPitchBeyondLimit, pitch_, now_ns, frame);
+  test_axis(faults, RadarEvent::kRollMisaligned, RadarEvent::kRollBeyondLimit, roll_, now_ns, frame);
+}
+
+void SensorMonitor::set_verdict(SensorHealth& health, const FaultMemory& faults) const {
+  health.data_qualifier = DataQualifier::kAvailable;
+  health.extended_qualifier = ExtendedQualifier::kNormal;
+  for (std::size_t i = 0; i < kNumberOfRadarEvents; ++i) {
+    const auto radar_event = static_cast<RadarEvent>(i);
+    const FaultRecord* const record = faults.find(event(radar_event));
+    if (record == nullptr) continue;
+    // Data that an earlier process saw say nothing about data now.
+    const bool counts = radar_event != RadarEvent::kNoData || record->tested_since_start;
+    if (record->status.last == TestResult::kNone || !counts) health.untested_events |= bit_of(radar_event);
+    if (record->status.last != TestResult::kFailed) continue;
+    health.failed_events |= bit_of(radar_event);
+    const EventType& type = type_of(kind_of(radar_event));
+    if (type.effect <= health.data_qualifier) continue;  // the first of the worst effect is the reason
+    health.data_qualifier = type.effect;
+    health.extended_qualifier = type.reason;
   }
-  if (finding_ != AlignmentFinding::kNone) {
-    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kWrongInput);
+  const auto is_failed = [&health](RadarEvent e) { return (health.failed_events & bit_of(e)) != 0; };
+  const auto is_untested = [&health](RadarEvent e) { return (health.untested_events & bit_of(e)) != 0; };
+  // Frames arrive, but none is usable: the reason for the silence.
+  if (health.extended_qualifier == ExtendedQualifier::kNoData && is_failed(RadarEvent::kRejectedData)) {
+    health.extended_qualifier = ExtendedQualifier::kInvalidData;
   }
-  if (inhibited) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
-  if (misaligned) return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);
-  if (reports(source_condition::kPartlyBlocked)) {
-    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kBeginningBlockage);
+  if (health.data_qualifier == DataQualifier::kAvailable &&
+      (is_untested(RadarEvent::kNoData) || is_untested(RadarEvent::kYawMisaligned))) {
+    // Never available before it was tested: without data, or with a mounting that was never verified.
+    health.data_qualifier =
+        is_untested(RadarEvent::kNoData) ? DataQualifier::kNotAvailable : DataQualifier::kAvailableReduced;
+    health.extended_qualifier = ExtendedQualifier::kInitialising;
   }
-  if (is_rejected || is_suspect) return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
-  if (rate_.is_full(now_ns) && health.rate_hz < config_.min_rate_ratio * expected_rate_hz_) {
-    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kRateReduced);
-  }
-  return verdict(DataQualifier::kAvailable, ExtendedQualifier::kNormal);
+  show_last_known(health.yaw, faults.find(event(RadarEvent::kYawMisaligned)), AlignmentParameter::kYaw);
+  show_last_known(health.pitch, faults.find(event(RadarEvent::kPitchMisaligned)), AlignmentParameter::kPitch);
+  show_last_known(health.roll, faults.find(event(RadarEvent::kRollMisaligned)), AlignmentParameter::kRoll);
+}
+
+SensorHealth SensorMonitor::judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle) {
+  SensorHealth health = quantities(now_ns);
+  health.lateral_displacement_m = lateral_displacement_m(health.yaw);
+  test(faults, now_ns, health, vehicle);
+  set_verdict(health, faults);
+  health.lateral_displacement_m = lateral_displacement_m(health.yaw);
+  return health;
+}
+
+void SensorMonitor::restore(const FaultMemory& faults) {
+  if (faults.is_failed(event(RadarEvent::kYawMisaligned))) yaw_.restore_beyond();
+  if (faults.is_failed(event(RadarEvent::kPitchMisaligned))) pitch_.restore_beyond();
+  if (faults.is_failed(event(RadarEvent::kRollMisaligned))) roll_.restore_beyond();
 }
 
 }  // namespace boresight::health

@@ -1,6 +1,7 @@
 // Verdict on one radar: delivery, rate, data integrity, mounting error.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "interfaces/messages/alignment_estimate.hpp"
@@ -9,6 +10,7 @@
 #include "interfaces/messages/service_status.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/health/core/axis_judge.hpp"
+#include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/rate_window.hpp"
 
 namespace boresight::health {
@@ -23,7 +25,11 @@ class SensorMonitor {
   void observe(const AlignmentEstimate& estimate);
   /// The gateway's counts for this radar.
   void observe(const SourceStatistics& statistics, std::int64_t now_ns);
-  [[nodiscard]] SensorHealth judge(std::int64_t now_ns);
+  /// Reports the results of all tests to the fault memory and derives the verdict from the failed events in it.
+  /// `vehicle` has the values of a freeze frame that do not belong to this radar.
+  [[nodiscard]] SensorHealth judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle);
+  /// Continues with the verdicts of an earlier process.
+  void restore(const FaultMemory& faults);
 
   [[nodiscard]] std::uint32_t radar_id() const { return radar_id_; }
   /// True if a scan arrived within the radar's deadline.
@@ -45,22 +51,36 @@ class SensorMonitor {
   RateWindow rejected_;
   RateWindow suspect_;
   SourceStatistics last_statistics_{};
+  bool has_statistics_ = false;
+  bool has_estimate_ = false;
   /// One angle about the sensor's own axis and about the vehicle's axis. Either may be observable without the other.
   struct Angle {
     AxisJudge sensor;
     AxisJudge vehicle;
-    [[nodiscard]] bool is_beyond() const { return sensor.is_beyond() || vehicle.is_beyond(); }
+    [[nodiscard]] TestResult verdict() const;
     [[nodiscard]] bool is_inhibited() const { return sensor.is_inhibited() || vehicle.is_inhibited(); }
     [[nodiscard]] AxisHealth health() const;
     void clear() {
       sensor.clear();
       vehicle.clear();
     }
+    void restore_beyond() {
+      sensor.restore_beyond();
+      vehicle.restore_beyond();
+    }
   };
   Angle yaw_;
   Angle pitch_;
   Angle roll_;
   void judge_axes(const AlignmentEstimate& estimate);
+  [[nodiscard]] Event event(RadarEvent radar_event) const;
+  [[nodiscard]] SensorHealth quantities(std::int64_t now_ns);
+  [[nodiscard]] float lateral_displacement_m(const AxisHealth& yaw) const;
+  [[nodiscard]] FreezeFrame frame_of(const SensorHealth& health, const FreezeFrame& vehicle) const;
+  void test(FaultMemory& faults, std::int64_t now_ns, const SensorHealth& health, const FreezeFrame& vehicle);
+  void test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit, const Angle& angle,
+                 std::int64_t now_ns, const FreezeFrame& frame) const;
+  void set_verdict(SensorHealth& health, const FaultMemory& faults) const;
 
   // Of the latest estimate:
   AlignmentReason reason_ = AlignmentReason::kNone;
@@ -72,6 +92,8 @@ class SensorMonitor {
   std::uint32_t step_changes_ = 0;
   double speed_scale_ = 1.0;
   double speed_scale_std_ = 0.0;
+  std::array<float, 4> estimate_{};     // as in a freeze frame
+  std::array<float, 10> covariance_{};  //
 };
 
 }  // namespace boresight::health

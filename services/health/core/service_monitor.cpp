@@ -34,11 +34,12 @@ float seconds(std::int64_t duration_ns) {
 }  // namespace
 
 ServiceMonitor::ServiceMonitor(std::uint32_t service, std::int64_t heartbeat_deadline_ns,
-                               std::int64_t output_deadline_ns, const Config& config)
+                               std::int64_t output_deadline_ns, const Config& config, std::int64_t start_ns)
     : service_(service),
       heartbeat_deadline_ns_(heartbeat_deadline_ns),
       output_deadline_ns_(output_deadline_ns),
       config_(config),
+      start_ns_(start_ns),
       outputs_(config.window_s),
       losses_(config.window_s),
       latency_(config.window_s) {}
@@ -77,7 +78,11 @@ ServiceHealth ServiceMonitor::judge(bool input_flows, std::int64_t now_ns) {
   health.service = service_;
   health.restarts = restarts_;
   health.last_heartbeat_s = -1.0F;
-  if (last_ns_ == kNever) return health;
+  if (last_ns_ == kNever) {
+    const bool had_time = seconds(now_ns - start_ns_) > static_cast<float>(config_.start_grace_s);
+    if (had_time) health.condition = ServiceCondition::kSilent;
+    return health;
+  }
   const bool late = output_deadline_ns_ > 0 && input_flows &&
                     now_ns - std::max(last_output_ns_, input_since_ns_) > output_deadline_ns_;
   health.deadline_missed = late ? 1 : 0;
@@ -101,6 +106,22 @@ ServiceHealth ServiceMonitor::judge(bool input_flows, std::int64_t now_ns) {
     health.condition = ServiceCondition::kAlive;
   }
   return health;
+}
+
+void ServiceMonitor::report(const ServiceHealth& health, FaultMemory& faults, std::int64_t now_ns,
+                            const FreezeFrame& frame) {
+  const bool is_silent = health.condition == ServiceCondition::kSilent;
+  const auto report = [&](EventKind kind, bool is_tested, bool is_failed) {
+    const TestResult result = !is_tested ? TestResult::kNone : is_failed ? TestResult::kFailed : TestResult::kPassed;
+    faults.report({kind, static_cast<std::uint8_t>(service_)}, result, now_ns, frame);
+  };
+  report(EventKind::kServiceSilent, health.condition != ServiceCondition::kUnknown, is_silent);
+  // A silent service says nothing about its work.
+  const bool is_alive = last_ns_ != kNever && !is_silent;
+  report(EventKind::kServiceLate, is_alive, health.deadline_missed != 0);
+  report(EventKind::kServiceLosing, is_alive, losses_.sum(now_ns) > 0);
+  report(EventKind::kServiceDegraded, is_alive, last_.state == ServiceState::kDegraded);
+  report(EventKind::kServiceRestarted, is_alive, health.condition == ServiceCondition::kRestarted);
 }
 
 }  // namespace boresight::health

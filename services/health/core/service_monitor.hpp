@@ -6,6 +6,7 @@
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "services/health/core/config.hpp"
+#include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/latency_window.hpp"
 #include "services/health/core/rate_window.hpp"
 
@@ -16,11 +17,13 @@ class ServiceMonitor {
  public:
   /// `output_deadline_ns`: longest time between two outputs while input arrives; 0: not tested.
   ServiceMonitor(std::uint32_t service, std::int64_t heartbeat_deadline_ns, std::int64_t output_deadline_ns,
-                 const Config& config);
+                 const Config& config, std::int64_t start_ns);
 
   void observe(const ServiceStatus& status, std::int64_t now_ns);
   /// `input_flows`: the input of the service has arrived within its deadline.
   [[nodiscard]] ServiceHealth judge(bool input_flows, std::int64_t now_ns);
+  /// Reports the results of its tests to the fault memory; call it with the health of the same time.
+  void report(const ServiceHealth& health, FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& frame);
 
   /// True if its output counter grew within the output deadline.
   [[nodiscard]] bool delivers(std::int64_t now_ns) const {
@@ -33,6 +36,7 @@ class ServiceMonitor {
   std::int64_t heartbeat_deadline_ns_;
   std::int64_t output_deadline_ns_;
   Config config_;
+  std::int64_t start_ns_;
   std::int64_t last_ns_ = kNever;
   std::int64_t restarted_ns_ = kNever;
   std::int64_t last_output_ns_ = kNever;

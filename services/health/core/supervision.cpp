@@ -1,6 +1,7 @@
 #include "services/health/core/supervision.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "interfaces/catalogue/catalogue.hpp"
 
@@ -50,14 +51,30 @@ DataQualifier overall_of(const HealthReport& report) {
 }  // namespace
 
 Supervision::Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns)
-    : config_(config), window_begin_ns_(start_ns) {
+    : config_(config), faults_(vehicle, config.faults), window_begin_ns_(start_ns) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  vehicle_frame_.speed_mps = vehicle_frame_.rate_hz = vehicle_frame_.detections_per_scan = kUnknown;
+  vehicle_frame_.lateral_displacement_m = vehicle_frame_.reference_range_m = kUnknown;
+  vehicle_frame_.estimate.fill(kUnknown);
+  vehicle_frame_.covariance.fill(kUnknown);
   for (const RadarConfig& radar : vehicle.radars) {
     if (sensors_.size() < kMaxRadars) sensors_.emplace_back(radar, config, start_ns);
   }
   const std::int64_t heartbeat_deadline_ns = catalogue::topic(TopicId::kServiceStatus).deadline_ns;
   for (std::uint32_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
-    services_.emplace_back(i, heartbeat_deadline_ns, output_deadline_ns(static_cast<Service>(i)), config);
+    services_.emplace_back(i, heartbeat_deadline_ns, output_deadline_ns(static_cast<Service>(i)), config, start_ns);
   }
+}
+
+void Supervision::set_origin(std::uint64_t configuration, std::string_view software) {
+  vehicle_frame_.configuration = configuration;
+  vehicle_frame_.software = {};
+  std::copy_n(software.begin(), std::min(software.size(), vehicle_frame_.software.size() - 1),
+              vehicle_frame_.software.begin());
+}
+
+void Supervision::restored() {
+  for (SensorMonitor& sensor : sensors_) sensor.restore(faults_);
 }
 
 SensorMonitor* Supervision::sensor(std::uint32_t radar_id) {
@@ -68,6 +85,10 @@ SensorMonitor* Supervision::sensor(std::uint32_t radar_id) {
 
 void Supervision::observe(const RadarScan& scan, std::int64_t now_ns) {
   if (SensorMonitor* const s = sensor(scan.header.source_id)) s->observe(scan, now_ns);
+}
+
+void Supervision::observe(const EgoMotion& motion) {
+  vehicle_frame_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<float>::quiet_NaN();
 }
 
 void Supervision::observe(const AlignmentEstimate& estimate) {
@@ -100,9 +121,23 @@ void Supervision::observe(const ServiceStatus& status, std::int64_t now_ns) {
   }
 }
 
-void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
+void Supervision::report_change(EventKind kind, const AlignmentVehicleChange& change, std::int64_t now_ns) {
+  if (change.time_ns == 0) return;
+  // A restarted estimator or health service hears of the same change again.
+  const Event event{kind};
+  const FaultRecord* const known = faults_.find(event);
+  const bool is_known = known != nullptr && known->status.occurrences > 0 && known->latest.cycle == faults_.cycle() &&
+                        change.time_ns <= static_cast<std::int64_t>(known->latest.uptime_ns);
+  if (!is_known) faults_.report_once(event, now_ns, vehicle_frame_);
+}
+
+void Supervision::judge(HealthReport& out, std::int64_t now_ns, std::int64_t epoch_ns) {
+  vehicle_frame_.time_ns = epoch_ns;
+  vehicle_frame_.uptime_ns = static_cast<std::uint64_t>(now_ns);
+  vehicle_frame_.cycle = faults_.cycle();
+  report_change(EventKind::kLoadChange, load_change_, now_ns);
+  report_change(EventKind::kSpeedSignalChange, speed_change_, now_ns);
   out.reserved = {};
-  out.reserved2 = 0;
   out.load_change = load_change_;
   out.speed_change = speed_change_;
   out.sensors = {};
@@ -111,7 +146,7 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
   out.number_of_services = static_cast<std::uint32_t>(services_.size());
   bool scans_flow = false;
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    out.sensors[i] = sensors_[i].judge(now_ns);
+    out.sensors[i] = sensors_[i].judge(faults_, now_ns, vehicle_frame_);
     scans_flow = scans_flow || sensors_[i].delivers(now_ns);
   }
   // A stage is late only if the stage before it delivers: a broken chain is reported at its first broken stage.
@@ -122,10 +157,12 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
     if (service == Service::kGhostFilter) input_flows = delivers(Service::kDetectionCorrector);
     if (service == Service::kTracker) input_flows = delivers(Service::kGhostFilter);
     out.services[i] = services_[i].judge(input_flows, now_ns);
+    services_[i].report(out.services[i], faults_, now_ns, vehicle_frame_);
   }
   const LatencyHistogram& latencies = complete_latencies_.total() > 0 ? complete_latencies_ : latencies_;
   out.latency_p50_ms = static_cast<float>(latencies.percentile_us(0.5) * 1e-3);
   out.latency_max_ms = static_cast<float>(latencies.max_us() * 1e-3);
+  out.stored_events = faults_.stored();
   out.overall = overall_of(out);
 }
 
@@ -136,7 +173,7 @@ bool verdicts_differ(const HealthReport& a, const HealthReport& b) {
     const SensorHealth &x = a.sensors[i], &y = b.sensors[i];
     if (x.data_qualifier != y.data_qualifier || x.extended_qualifier != y.extended_qualifier) return true;
     if (x.finding != y.finding || (x.drift.since_ns != 0) != (y.drift.since_ns != 0)) return true;
-    if (x.conditions != y.conditions) return true;  // the sensor's own verdict
+    if (x.conditions != y.conditions || x.failed_events != y.failed_events) return true;
   }
   for (std::size_t i = 0; i < a.number_of_services && i < kMaxServices; ++i) {
     const ServiceHealth &x = a.services[i], &y = b.services[i];

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "interfaces/messages/service_status.hpp"
@@ -12,6 +14,7 @@
 #include "services/common/estimation/latency_histogram.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/health/core/config.hpp"
+#include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/sensor_monitor.hpp"
 #include "services/health/core/service_monitor.hpp"
 
@@ -23,18 +26,30 @@ class Supervision {
  public:
   Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns);
 
+  /// Values of each freeze frame: fingerprint of the configuration, version of the software.
+  void set_origin(std::uint64_t configuration, std::string_view software);
+  /// The fault memory, for restoring before restored(), for storing and for clearing.
+  [[nodiscard]] FaultMemory& faults() { return faults_; }
+  /// Continues with the verdicts that the fault memory was restored with. Call it before the first judgement.
+  void restored();
+
   void observe(const RadarScan& scan, std::int64_t now_ns);
+  void observe(const EgoMotion& motion);
   void observe(const AlignmentEstimate& estimate);
   void observe(const TrackList& tracks, std::int64_t now_ns);
   void observe(const ServiceStatus& status, std::int64_t now_ns);
 
-  /// Writes everything but the header.
-  void judge(HealthReport& out, std::int64_t now_ns);
+  /// Writes everything but the header. `epoch_ns` is the time since the epoch, for freeze frames.
+  void judge(HealthReport& out, std::int64_t now_ns, std::int64_t epoch_ns);
 
  private:
   [[nodiscard]] SensorMonitor* sensor(std::uint32_t radar_id);
 
   Config config_;
+  void report_change(EventKind kind, const AlignmentVehicleChange& change, std::int64_t now_ns);
+
+  FaultMemory faults_;
+  FreezeFrame vehicle_frame_;  // of the present time, without a radar's values
   std::vector<SensorMonitor> sensors_;
   std::vector<ServiceMonitor> services_;
   AlignmentVehicleChange load_change_{};   // the latest that an estimate reported

@@ -42,11 +42,11 @@ class DiagnosticsReader::Readers {
     using eprosima::fastdds::dds::TypeSupport;
     if (on_sensor_health) {
       participant_.reader(kSensorHealthTopic, TypeSupport(new diagnostics::SensorHealthPubSubType()),
-                          kReadLatestOfEachRadar, sensor_health_);
+                          kReadLatestOfEachRadar, &sensor_health_);
     }
     if (on_diagnostic_array) {
       participant_.reader(kDiagnosticsTopic, TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
-                          kReadArrays, diagnostic_array_);
+                          kReadArrays, &diagnostic_array_);
     }
   }
 

@@ -16,13 +16,12 @@ constexpr int kWrittenLatestOfEachRadar = 1;
 constexpr int kWrittenArrays = 1;
 }  // namespace
 
-DiagnosticsWriter::DiagnosticsWriter(const Config& config, const VehicleConfig& vehicle)
+DiagnosticsWriter::DiagnosticsWriter(Participant& participant, const VehicleConfig& vehicle)
     : vehicle_(vehicle),
-      participant_(config, "boresight-health"),
-      sensor_health_(participant_.writer(kSensorHealthTopic,
-                                         eprosima::fastdds::dds::TypeSupport(new diagnostics::SensorHealthPubSubType()),
-                                         kWrittenLatestOfEachRadar)),
-      diagnostics_(participant_.writer(
+      sensor_health_(participant.writer(kSensorHealthTopic,
+                                        eprosima::fastdds::dds::TypeSupport(new diagnostics::SensorHealthPubSubType()),
+                                        kWrittenLatestOfEachRadar)),
+      diagnostics_(participant.writer(
           kDiagnosticsTopic,
           eprosima::fastdds::dds::TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
           kWrittenArrays)) {}

@@ -11,14 +11,13 @@ namespace boresight::dds {
 
 class DiagnosticsWriter {
  public:
-  /// Joins the domain; throws std::runtime_error if that is impossible.
-  DiagnosticsWriter(const Config& config, const VehicleConfig& vehicle);
+  /// Throws std::runtime_error if a topic or a writer cannot be created. `participant` must outlive this object.
+  DiagnosticsWriter(Participant& participant, const VehicleConfig& vehicle);
   /// Sends the whole report. `time_ns` is since the epoch. False if the middleware did not take all of it.
   bool write(const HealthReport& report, std::int64_t time_ns);
 
  private:
   VehicleConfig vehicle_;
-  Participant participant_;
   eprosima::fastdds::dds::DataWriter& sensor_health_;
   eprosima::fastdds::dds::DataWriter& diagnostics_;
 };

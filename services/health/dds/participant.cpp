@@ -24,9 +24,10 @@ T* made(T* thing, const std::string& what) {
 }
 
 template <typename Qos>
-void set_common(Qos& qos, int depth) {
+void set_common(Qos& qos, int depth, Participant::Durability durability) {
   qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
+  qos.durability().kind = durability == Participant::Durability::kVolatile ? fast::VOLATILE_DURABILITY_QOS
+                                                                           : fast::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
@@ -60,12 +61,13 @@ fast::Topic& Participant::topic(const std::string& name, const fast::TypeSupport
   return *made(participant_->create_topic(name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT), "topic " + name);
 }
 
-fast::DataWriter& Participant::writer(const std::string& name, const fast::TypeSupport& type, int depth) {
+fast::DataWriter& Participant::writer(const std::string& name, const fast::TypeSupport& type, int depth,
+                                      Durability durability) {
   if (publisher_ == nullptr) {
     publisher_ = made(participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT), "a publisher");
   }
   fast::DataWriterQos qos = fast::DATAWRITER_QOS_DEFAULT;
-  set_common(qos, depth);
+  set_common(qos, depth, durability);
   // The sender is the main thread of the service and must not wait for a slow reader.
   qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = {0, 1'000'000};
@@ -73,13 +75,13 @@ fast::DataWriter& Participant::writer(const std::string& name, const fast::TypeS
 }
 
 fast::DataReader& Participant::reader(const std::string& name, const fast::TypeSupport& type, int depth,
-                                      fast::DataReaderListener& listener) {
+                                      fast::DataReaderListener* listener, Durability durability) {
   if (subscriber_ == nullptr) {
     subscriber_ = made(participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT), "a subscriber");
   }
   fast::DataReaderQos qos = fast::DATAREADER_QOS_DEFAULT;
-  set_common(qos, depth);
-  return *made(subscriber_->create_datareader(&topic(name, type), qos, &listener), "a reader of " + name);
+  set_common(qos, depth, durability);
+  return *made(subscriber_->create_datareader(&topic(name, type), qos, listener), "a reader of " + name);
 }
 
 }  // namespace boresight::dds

@@ -1,6 +1,7 @@
 // One participant of a DDS domain, over UDP only: a killed participant leaves no file in /dev/shm.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -27,12 +28,17 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Reliable and transient-local, the last `depth` samples of each instance.
+  /// What a reader gets that joins late.
+  enum class Durability : std::uint8_t { kTransientLocal, kVolatile };
+
+  /// Reliable, the last `depth` samples of each instance.
   [[nodiscard]] eprosima::fastdds::dds::DataWriter& writer(const std::string& topic,
-                                                           const eprosima::fastdds::dds::TypeSupport& type, int depth);
-  /// Calls `listener` from the middleware's thread. The listener must outlive the participant.
+                                                           const eprosima::fastdds::dds::TypeSupport& type, int depth,
+                                                           Durability durability = Durability::kTransientLocal);
+  /// Calls `listener`, if not null, from the middleware's thread. The listener must outlive the participant.
   eprosima::fastdds::dds::DataReader& reader(const std::string& topic, const eprosima::fastdds::dds::TypeSupport& type,
-                                             int depth, eprosima::fastdds::dds::DataReaderListener& listener);
+                                             int depth, eprosima::fastdds::dds::DataReaderListener* listener,
+                                             Durability durability = Durability::kTransientLocal);
 
  private:
   [[nodiscard]] eprosima::fastdds::dds::Topic& topic(const std::string& name,

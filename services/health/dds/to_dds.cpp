@@ -4,12 +4,14 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
 #include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
+#include "services/health/core/faults/event.hpp"
 
 namespace boresight::dds {
 
@@ -66,6 +68,18 @@ void add_value(DiagnosticStatus_& status, std::string_view key, std::string valu
   status.values_().push_back(std::move(pair));
 }
 
+/// Trouble codes of the failed tests of a radar.
+std::vector<std::string> trouble_codes(const SensorHealth& sensor) {
+  std::vector<std::string> codes;
+  for (std::size_t i = 0; i < kNumberOfRadarEvents; ++i) {
+    const auto event = static_cast<RadarEvent>(i);
+    if ((sensor.failed_events & bit_of(event)) == 0) continue;
+    codes.push_back(
+        health::code_text(health::dtc_of({health::kind_of(event), static_cast<std::uint8_t>(sensor.radar_id)})));
+  }
+  return codes;
+}
+
 void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth& axis) {
   if (axis.observable == 0) {
     add_value(status, name, "not observable");
@@ -91,6 +105,8 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
                               explanation.empty() ? "" : ": ", explanation));
   add_value(status, "data_qualifier", std::string(name_of(sensor.data_qualifier)));
   add_value(status, "extended_qualifier", std::string(name_of(sensor.extended_qualifier)));
+  const std::vector<std::string> codes = trouble_codes(sensor);
+  add_value(status, "trouble codes", codes.empty() ? "none" : fmt::format("{}", fmt::join(codes, " ")));
   add_value(status, "rate_hz", fmt::format("{:.1f} of {:.1f}", sensor.rate_hz, sensor.expected_rate_hz));
   add_axis(status, "yaw error", sensor.yaw);
   add_axis(status, "pitch error", sensor.pitch);
@@ -145,6 +161,7 @@ DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleCo
   const auto event = [](std::string words) { return words.empty() ? std::string("none") : words; };
   add_value(status, "load change", event(alignment_words::load_change_sentence(report.load_change)));
   add_value(status, "speed signal", event(alignment_words::speed_change_sentence(report.speed_change)));
+  add_value(status, "stored trouble codes", fmt::format("{}", report.stored_events));
   add_value(status, "latency p50", fmt::format("{:.3f} ms", report.latency_p50_ms));
   add_value(status, "latency max", fmt::format("{:.3f} ms", report.latency_max_ms));
   return status;
@@ -165,6 +182,7 @@ diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size
   out.time_ns(time_ns);
   out.data_qualifier(static_cast<diagnostics::DataQualifier>(sensor.data_qualifier));
   out.extended_qualifier(static_cast<diagnostics::ExtendedQualifier>(sensor.extended_qualifier));
+  out.trouble_codes(trouble_codes(sensor));
   out.explanation(alignment_words::explanation_of(sensor, vehicle));
   out.alignment_reason(std::string(alignment_words::key_of(sensor.reason)));
   out.finding(std::string(alignment_words::key_of(sensor.finding)));

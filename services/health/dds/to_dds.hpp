@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "generated/diagnostic_array.h"
 #include "generated/sensor_health.h"

@@ -49,7 +49,7 @@ void Source::discard_scan() {
 }
 
 void Source::report_conditions(std::uint32_t conditions) {
-  if (id_ != 0) sink_.statistics(id_).conditions = conditions;
+  if (id_ != 0) sink_.statistics(id_).conditions = conditions | source_condition::kReported;
 }
 
 void Source::count_e2e(const E2eCounts& counts) {

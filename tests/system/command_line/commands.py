@@ -16,7 +16,7 @@ DRIVE = TMP / "drive"
 TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
 
-COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "fit-evidence", "gospa",
+COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "dtc clear", "dtc list", "dtc show", "dtc table", "fit-evidence", "gospa",
             "monitor", "record", "report", "run", "score", "simulate", "supervise", "track")
 # Commands whose input is not there: exit code 3, and the message names the input.
 MISSING_INPUT = (
@@ -29,6 +29,7 @@ MISSING_INPUT = (
     "decode --profile ars548 --csv ABSENT",
     "decode --vehicle demo --check ABSENT",
     "demo --recording ABSENT --vehicle demo",
+    "dtc list --state ABSENT --vehicle demo",
     "fit-evidence ABSENT --vehicle demo",
     "gospa ABSENT ABSENT",
     "report ABSENT --vehicle demo",
@@ -54,6 +55,9 @@ USAGE = (
     ("decode --vehicle demo --csv --check x", "--csv, --ego and --check"),
     ("demo --vehicle absent", "names there: alignment_drive, "),
     ("diagnostics --domain 999", "--domain"),
+    ("dtc show C1D0", "is no trouble code"),
+    ("dtc clear all", "no secret"),
+    ("dtc clear all --key /absent", "/absent: "),
     ("fit-evidence DRIVE --vehicle demo --json", "only one result can go to standard output"),
     ("fit-evidence DRIVE --vehicle absent", "names there: alignment_drive, "),
     ("fit-evidence DRIVE --vehicle demo --statistics absent", "absent.toml"),

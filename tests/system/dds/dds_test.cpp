@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kTime_ns = 1'700'000'000'250'000'000;
-const Config kConfig{.enabled = true, .domain = 77, .interfaces = {}, .period_s = 1.0};
+const Config kConfig{.enabled = true, .domain = 77, .interfaces = {}, .period_s = 1.0, .command_key_file = {}};
 
 VehicleConfig vehicle() {
   VehicleConfig v;
@@ -96,7 +96,8 @@ struct Received {
 };
 
 TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
-  DiagnosticsWriter writer(kConfig, vehicle());
+  Participant participant(kConfig, "test");
+  DiagnosticsWriter writer(participant, vehicle());
   HealthReport old = report();
   old.sensors[1].extended_qualifier = ExtendedQualifier::kNoData;
   ASSERT_TRUE(writer.write(old, kTime_ns - 1'000'000'000));
@@ -158,7 +159,8 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
 
 TEST(Dds, LeavesNothingInSharedMemory) {
   {
-    DiagnosticsWriter writer(kConfig, vehicle());
+    Participant participant(kConfig, "test");
+    DiagnosticsWriter writer(participant, vehicle());
     Received received;
     const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
     ASSERT_TRUE(writer.write(report(), kTime_ns));
@@ -169,7 +171,8 @@ TEST(Dds, LeavesNothingInSharedMemory) {
 }
 
 TEST(Dds, OtherDomainsReceiveNothing) {
-  DiagnosticsWriter writer(kConfig, vehicle());
+  Participant participant(kConfig, "test");
+  DiagnosticsWriter writer(participant, vehicle());
   Received received;
   Config other = kConfig;
   other.domain = 78;
@@ -180,7 +183,8 @@ TEST(Dds, OtherDomainsReceiveNothing) {
 
 TEST(Dds, AnotherImplementationReadsBothTopics) {
   if (!fs::exists(BORESIGHT_PEER)) GTEST_SKIP() << "skipped: Cyclone DDS is not installed";
-  DiagnosticsWriter writer(kConfig, vehicle());
+  Participant participant(kConfig, "test");
+  DiagnosticsWriter writer(participant, vehicle());
   ASSERT_TRUE(writer.write(report(), kTime_ns));
   FILE* const pipe = popen(BORESIGHT_PEER " 77 15", "r");
   ASSERT_NE(pipe, nullptr);

@@ -22,13 +22,13 @@ std::int64_t feed(AxisJudge& judge, double error_deg, double std_deg, double sec
 }
 
 TEST(AxisJudge, IsNotBeyondWithinTolerance) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   feed(judge, 1.4, 0.01, 60.0, kSecond);
   EXPECT_FALSE(judge.is_beyond());
 }
 
 TEST(AxisJudge, IsBeyondAfterItsTimeAndNotBefore) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   const std::int64_t t = feed(judge, -2.5, 0.02, 0.8, kSecond);
   EXPECT_FALSE(judge.is_beyond());
   feed(judge, -2.5, 0.02, 0.4, t);
@@ -38,7 +38,7 @@ TEST(AxisJudge, IsBeyondAfterItsTimeAndNotBefore) {
 }
 
 TEST(AxisJudge, UncertainEstimateChangesNoVerdict) {
-  AxisJudge judge(Config{.confidence_sigma = 2.33, .set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.confidence_sigma = 2.33, .set_s = 1.0, .faults = {}}, kTolerance_rad);
   feed(judge, 2.5, 0.5, 60.0, kSecond);  // 2.5° − 2.33 · 0.5° < 1.5°
   EXPECT_FALSE(judge.is_beyond());
   feed(judge, 2.5, 0.42, 60.0, 100 * kSecond);  // 1.52° > 1.5°
@@ -46,7 +46,7 @@ TEST(AxisJudge, UncertainEstimateChangesNoVerdict) {
 }
 
 TEST(AxisJudge, ShortExcursionChangesNoVerdict) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   std::int64_t t = kSecond;
   for (int i = 0; i < 20; ++i) {
     t = feed(judge, 2.5, 0.02, 0.8, t);
@@ -56,7 +56,7 @@ TEST(AxisJudge, ShortExcursionChangesNoVerdict) {
 }
 
 TEST(AxisJudge, HysteresisKeepsTheVerdictAtTheTolerance) {
-  AxisJudge judge(Config{.set_s = 1.0, .clear_s = 5.0, .clear_ratio = 0.9}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .clear_s = 5.0, .clear_ratio = 0.9, .faults = {}}, kTolerance_rad);
   std::int64_t t = feed(judge, 2.0, 0.02, 2.0, kSecond);
   ASSERT_TRUE(judge.is_beyond());
   t = feed(judge, 1.4, 0.02, 60.0, t);  // within, but over 0.9 · 1.5°
@@ -68,7 +68,7 @@ TEST(AxisJudge, HysteresisKeepsTheVerdictAtTheTolerance) {
 }
 
 TEST(AxisJudge, UnobservableEstimateChangesNothing) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   std::int64_t t = feed(judge, 2.5, 0.02, 2.0, kSecond);
   ASSERT_TRUE(judge.is_beyond());
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -85,7 +85,7 @@ TEST(AxisJudge, UnobservableEstimateChangesNothing) {
 }
 
 TEST(AxisJudge, IsInhibitedFarBeyondTolerance) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   feed(judge, 7.2, 0.02, 2.0, kSecond);
   EXPECT_TRUE(judge.is_beyond());
   EXPECT_FALSE(judge.is_inhibited());
@@ -94,7 +94,7 @@ TEST(AxisJudge, IsInhibitedFarBeyondTolerance) {
 }
 
 TEST(AxisJudge, ClockThatJumpedBackDelaysNothing) {
-  AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
+  AxisJudge judge(Config{.set_s = 1.0, .faults = {}}, kTolerance_rad);
   feed(judge, 2.5, 0.02, 0.6, 1000 * kSecond);
   feed(judge, 2.5, 0.02, 1.2, kSecond);
   EXPECT_TRUE(judge.is_beyond());

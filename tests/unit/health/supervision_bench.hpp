@@ -16,6 +16,7 @@ namespace boresight::health {
 using catalogue::Service;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kStart = 1'000'000 * kMillisecond;
+constexpr std::int64_t kEpoch = 1'700'000'000'000'000'000;  // of the wall clock at monotonic time 0
 
 inline VehicleConfig two_radars() {
   VehicleConfig vehicle;
@@ -59,7 +60,8 @@ class SupervisionTest : public testing::Test {
   const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
   const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
 
-  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, except muted ones.
+  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, except muted ones;
+  /// judged at 50 Hz as by the service.
   void run(double seconds) {
     const std::int64_t end_ns = now_ + static_cast<std::int64_t>(seconds * 1e9);
     for (; now_ < end_ns; now_ += 10 * kMillisecond, ++step_) {
@@ -86,11 +88,12 @@ class SupervisionTest : public testing::Test {
           if (!mute_[s]) supervision_.observe(status_[s], now_);
         }
       }
+      if (step_ % 2 == 0) supervision_.judge(*report_, now_, kEpoch + now_);
     }
-    supervision_.judge(*report_, now_);
+    supervision_.judge(*report_, now_, kEpoch + now_);
   }
 
-  Supervision supervision_{two_radars(), Config{.set_s = 1.0}, kStart};
+  Supervision supervision_{two_radars(), Config{.set_s = 1.0, .clear_s = 1.0, .faults = {}}, kStart};
   std::array<ServiceStatus, catalogue::kNumberOfSupervisedServices> status_{};
   std::array<AlignmentEstimate, 2> estimate_{};
   std::array<bool, 6> mute_{};

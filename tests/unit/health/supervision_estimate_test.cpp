@@ -30,7 +30,7 @@ TEST_F(SupervisionTest, AWrongInputIsReportedInsteadOfAMisalignment) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kWrongInput) << "does not become a misalignment";
   estimate_[1].finding = AlignmentFinding::kNone;
   run(0.5);
-  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal) << "set_s has not passed";
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kInitialising) << "set_s has not passed";
   run(2.0);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
 }
@@ -91,7 +91,7 @@ TEST_F(SupervisionTest, EstimateOfAWaitingEstimatorIsIgnored) {
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   estimate_[1].state = AlignmentState::kWaiting;
   run(10.0);
-  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kInitialising) << "never verified";
 }
 
 }  // namespace

@@ -22,18 +22,18 @@ TEST_F(SupervisionTest, HealthySystemIsAvailable) {
 }
 
 TEST_F(SupervisionTest, RadarWithoutAScanIsInitialisingAndThenNoData) {
-  supervision_.judge(*report_, kStart + 100 * kMillisecond);
+  supervision_.judge(*report_, kStart + 100 * kMillisecond, kEpoch);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInitialising);
   EXPECT_LT(radar(1).last_seen_s, 0.0F);
   EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kUnknown);
   EXPECT_LT(service(Service::kTracker).last_heartbeat_s, 0.0F);
   EXPECT_EQ(report_->overall, DataQualifier::kNotAvailable);
-  supervision_.judge(*report_, kStart + 300 * kMillisecond);
+  supervision_.judge(*report_, kStart + 300 * kMillisecond, kEpoch);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
-TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableWithItsNextScan) {
+TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableSoonAfterItsNextScan) {
   run(5.0);
   silent_radar_ = 2;
   run(0.2);
@@ -47,15 +47,17 @@ TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableWithIt
   run(10.0);
   silent_radar_ = 0;
   run(0.1);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable) << "debounced";
+  run(0.2);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailable);
   EXPECT_NEAR(radar(2).rate_hz, 20.0, 1.0);
 }
 
 TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
   scan_every_ = 10;
-  run(1.0);
+  run(1.5);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable) << "not judged before a window has passed";
-  run(4.0);
+  run(3.5);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailableReduced);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kRateReduced);
   scan_every_ = 5;
@@ -96,7 +98,7 @@ TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
   VehicleConfig vehicle = two_radars();
   vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kRadiansPerDegree;
   vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kRadiansPerDegree;
-  supervision_ = Supervision(vehicle, Config{.set_s = 1.0}, now_);
+  supervision_ = Supervision(vehicle, Config{.set_s = 1.0, .clear_s = 1.0, .faults = {}}, now_);
   run(3.0);
   for (auto& estimate : estimate_) {
     estimate.observable |= alignment_axis::kVehiclePitch | alignment_axis::kVehicleYaw;
@@ -154,7 +156,7 @@ TEST_F(SupervisionTest, ConditionsReportedByTheSensorSetTheVerdict) {
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
   const auto verdict_with = [&](std::uint32_t conditions) {
-    source.conditions = conditions;
+    source.conditions = source_condition::kReported | conditions;
     run(0.2);
     EXPECT_EQ(radar(1).conditions, conditions);
     EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
@@ -176,18 +178,18 @@ TEST_F(SupervisionTest, WorstEffectIsReportedAndThenTheReasonThatAWorkshopMustRe
   estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
-  source.conditions = source_condition::kPartlyBlocked;
+  source.conditions = source_condition::kReported | source_condition::kPartlyBlocked;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
   estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kRadiansPerDegree);
-  source.conditions = source_condition::kBlocked | source_condition::kPartlyBlocked;
+  source.conditions = source_condition::kReported | source_condition::kBlocked | source_condition::kPartlyBlocked;
   run(1.0);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked);
   silent_radar_ = 1;
   run(1.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "the blockage explains the silence";
-  source.conditions = 0;
+  source.conditions = source_condition::kReported;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
@@ -340,7 +342,7 @@ TEST_F(SupervisionTest, UnknownRadarsAndServicesAreIgnored) {
   ServiceStatus unknown{};
   unknown.header.source_id = 77;
   supervision_.observe(unknown, now_);
-  supervision_.judge(*report_, now_);
+  supervision_.judge(*report_, now_, kEpoch);
   EXPECT_EQ(report_->number_of_sensors, 2u);
 }
 

@@ -13,6 +13,7 @@
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
+#include "services/boresight/diagnostics/fault_text.hpp"
 #include "services/boresight/fit_evidence/report.hpp"
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
@@ -193,10 +194,27 @@ inline std::vector<std::string> reflector_runs() {
 inline std::vector<std::string> sensor_healths() {
   diagnostics::SensorHealth sensor;
   sensor.radar_name(kName);
+  sensor.trouble_codes({"C1A02-87"});
   diagnostics::SensorHealth unknown;
   unknown.speed_scale(std::nanf(""));
   unknown.yaw().error_rad(std::nanf(""));
   return {diagnostics_text::to_json(sensor), diagnostics_text::to_json(unknown)};
+}
+
+inline std::vector<std::string> fault_records() {
+  diagnostics::FaultRecord record;
+  diagnostics::FaultRecord unknown;
+  for (diagnostics::FreezeFrame* const frame : {&unknown.first(), &unknown.latest()}) {
+    const float nothing = std::nanf("");
+    frame->speed_mps(nothing);
+    frame->rate_hz(nothing);
+    frame->detections_per_scan(nothing);
+    frame->lateral_displacement_m(nothing);
+    frame->reference_range_m(nothing);
+    frame->estimate().fill(nothing);
+    frame->covariance().fill(nothing);
+  }
+  return {diagnostics_text::to_json(record), diagnostics_text::to_json(unknown)};
 }
 
 inline std::vector<std::string> diagnostic_arrays() {
@@ -224,6 +242,7 @@ inline std::map<std::string, std::vector<Value>> written() {
       {"boresight calibrate reflectors", reflector_runs()},
       {"boresight diagnostics", sensor_healths()},
       {"boresight diagnostics --array", diagnostic_arrays()},
+      {"boresight dtc list", fault_records()},
   };
   std::map<std::string, std::vector<Value>> values;
   for (const auto& [section, each] : texts) {

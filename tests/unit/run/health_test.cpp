@@ -15,13 +15,15 @@ class RunHealthWatch : public ::testing::Test {
   struct Line {
     std::int64_t time_ns;
     ExtendedQualifier front_left, front_right;
+    DataQualifier front_left_data;
   };
 
   RunHealthWatch() { watch_.start(kBegin_ns); }
 
   void advance(std::int64_t now_ns) {
     watch_.advance(now_ns, sources_, [this](const HealthResult& verdicts, std::int64_t time_ns) {
-      lines_.push_back({time_ns, verdicts.sensors[0].extended_qualifier, verdicts.sensors[1].extended_qualifier});
+      lines_.push_back({time_ns, verdicts.sensors[0].extended_qualifier, verdicts.sensors[1].extended_qualifier,
+                        verdicts.sensors[0].data_qualifier});
     });
   }
   /// Scans of a radar every 50 ms from one time to another.
@@ -46,8 +48,10 @@ TEST_F(RunHealthWatch, ReportsOnceASecondAndAtOnceWhenAVerdictChanges) {
   ASSERT_GE(lines_.size(), 6u);
   EXPECT_EQ(lines_[0].time_ns, kBegin_ns);
   EXPECT_EQ(lines_[0].front_left, ExtendedQualifier::kInitialising);
-  EXPECT_EQ(lines_[1].front_left, ExtendedQualifier::kNormal);
-  EXPECT_LT(lines_[1].time_ns - kBegin_ns, 100'000'000) << "the first scan changes the verdict";
+  EXPECT_EQ(lines_[0].front_left_data, DataQualifier::kNotAvailable);
+  EXPECT_EQ(lines_[1].front_left, ExtendedQualifier::kInitialising);
+  EXPECT_EQ(lines_[1].front_left_data, DataQualifier::kAvailableReduced) << "its mounting was not verified";
+  EXPECT_LT(lines_[1].time_ns - kBegin_ns, 300'000'000) << "soon after the first scan";
   bool was_silent = false;
   for (const Line& line : lines_) {
     if (line.front_right != ExtendedQualifier::kNoData || was_silent) continue;
@@ -65,9 +69,8 @@ TEST_F(RunHealthWatch, NoticesARadarThatFallsSilentBetweenTwoInputs) {
   lines_.clear();
   advance(kBegin_ns + 4'000'000'000);
   const auto silent = std::find_if(lines_.begin(), lines_.end(),
-                                   [](const Line& l) { return l.front_left != ExtendedQualifier::kNormal; });
+                                   [](const Line& l) { return l.front_left == ExtendedQualifier::kNoData; });
   ASSERT_NE(silent, lines_.end());
-  EXPECT_EQ(silent->front_left, ExtendedQualifier::kNoData);
   EXPECT_NEAR(1e-9 * static_cast<double>(silent->time_ns - kBegin_ns), 1.95 + 0.25, 0.03);
 }
 
@@ -85,7 +88,7 @@ TEST_F(RunHealthWatch, GoesOnWhenTheClockIsSetBack) {
   const std::int64_t earlier_ns = kBegin_ns - 100'000'000'000;
   scans(1, earlier_ns, earlier_ns + 3'000'000'000);
   ASSERT_GE(lines_.size(), 3u);
-  EXPECT_EQ(lines_.back().front_left, ExtendedQualifier::kNormal);
+  EXPECT_EQ(lines_.back().front_left_data, DataQualifier::kAvailableReduced);
   EXPECT_LT(lines_.back().time_ns, earlier_ns + 3'000'000'001);
 }
 

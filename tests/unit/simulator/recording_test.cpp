@@ -221,7 +221,7 @@ TEST_F(Recording, OnlyTheBlockedRadarReportsBlockageOnTheWire) {
       const std::uint32_t expected = id != 2 || before_s < 1.3 ? 0u
                                      : before_s < 2.5          ? source_condition::kPartlyBlocked
                                                                : source_condition::kBlocked;
-      EXPECT_EQ(conditions[i], expected) << "radar " << id << " after " << before_s;
+      EXPECT_EQ(conditions[i], source_condition::kReported | expected) << "radar " << id << " after " << before_s;
     }
   }
 }

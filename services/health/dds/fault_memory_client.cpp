@@ -1,0 +1,109 @@
+#include "services/health/dds/fault_memory_client.hpp"
+
+#include <algorithm>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "generated/fault_memoryPubSubTypes.h"
+#include "services/health/core/faults/status.hpp"
+#include "services/health/dds/participant.hpp"
+
+namespace boresight::dds {
+
+namespace {
+
+namespace fast = eprosima::fastdds::dds;
+
+constexpr int kLatestOfEachEvent = 1;
+constexpr int kReceivedReplies = 16;
+
+/// Calls `take(sample, is_alive)` for each sample that waits.
+template <typename Sample, typename Take>
+void take_all(fast::DataReader& reader, const Take& take) {
+  Sample sample;
+  fast::SampleInfo info;
+  while (reader.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+    take(sample, info.valid_data, info);
+  }
+}
+
+}  // namespace
+
+class FaultMemoryClient::Entities {
+ public:
+  explicit Entities(const Config& config)
+      : participant(config, "boresight"),
+        records(participant.reader(kFaultRecordTopic, fast::TypeSupport(new diagnostics::FaultRecordPubSubType()),
+                                   kLatestOfEachEvent, nullptr)),
+        state(participant.reader(kFaultMemoryStateTopic,
+                                 fast::TypeSupport(new diagnostics::FaultMemoryStatePubSubType()), 1, nullptr)),
+        replies(participant.reader(kCommandReplyTopic, fast::TypeSupport(new diagnostics::CommandReplyPubSubType()),
+                                   kReceivedReplies, nullptr)),
+        commands(participant.writer(kCommandTopic, fast::TypeSupport(new diagnostics::ClearCommandPubSubType()), 1,
+                                    Participant::Durability::kVolatile)) {}
+
+  Participant participant;
+  fast::DataReader& records;
+  fast::DataReader& state;
+  fast::DataReader& replies;
+  fast::DataWriter& commands;
+};
+
+FaultMemoryClient::FaultMemoryClient(const Config& config) : entities_(std::make_unique<Entities>(config)) {}
+FaultMemoryClient::~FaultMemoryClient() = default;
+
+void FaultMemoryClient::poll() {
+  take_all<diagnostics::FaultRecord>(entities_->records, [this](auto& record, bool is_valid, const auto& info) {
+    if (is_valid) {
+      records_[record.dtc()] = record;
+    } else if (info.instance_state != fast::ALIVE_INSTANCE_STATE) {
+      // The sample has only its key.
+      diagnostics::FaultRecord key;
+      if (entities_->records.get_key_value(&key, info.instance_handle) == ReturnCode_t::RETCODE_OK) {
+        records_.erase(key.dtc());
+      } else {
+        records_.erase(record.dtc());
+      }
+    }
+  });
+  take_all<diagnostics::FaultMemoryState>(entities_->state, [this](auto& state, bool is_valid, const auto&) {
+    if (is_valid) state_ = state;
+  });
+  take_all<diagnostics::CommandReply>(entities_->replies, [this](auto& reply, bool is_valid, const auto&) {
+    if (is_valid) replies_[reply.number()] = reply;
+  });
+}
+
+bool FaultMemoryClient::is_complete() const {
+  if (!state_) return false;
+  const auto stored = std::count_if(records_.begin(), records_.end(), [](const auto& entry) {
+    return (entry.second.status() & (health::dtc_status::kPending | health::dtc_status::kConfirmed)) != 0;
+  });
+  return stored >= static_cast<std::ptrdiff_t>(state_->stored());
+}
+
+bool FaultMemoryClient::can_command() const {
+  fast::PublicationMatchedStatus commands;
+  fast::SubscriptionMatchedStatus replies;
+  entities_->commands.get_publication_matched_status(commands);
+  entities_->replies.get_subscription_matched_status(replies);
+  return commands.current_count > 0 && replies.current_count > 0;
+}
+
+void FaultMemoryClient::clear(std::uint32_t dtc, std::uint64_t number, const CommandKey& key) {
+  diagnostics::ClearCommand command;
+  command.number(number);
+  command.dtc(dtc);
+  command.authentication(authentication_of(key, state_->challenge(), number, dtc));
+  entities_->commands.write(&command);
+}
+
+const diagnostics::CommandReply* FaultMemoryClient::reply(std::uint64_t number) const {
+  const auto found = replies_.find(number);
+  return found == replies_.end() ? nullptr : &found->second;
+}
+
+}  // namespace boresight::dds
