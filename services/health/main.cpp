@@ -17,6 +17,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   health::Supervision supervision(vehicle, config.supervision, runtime::monotonic_now_ns());
   health::Outlet outlet(node, vehicle, config.dds);
   runtime::Publisher<HealthReport> reports(node);
+  node.publishes_periodically(catalogue::TopicId::kHealthReport);
   node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });
   node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
