@@ -18,6 +18,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const corrector::Conf
   node.on_newest<RadarScan>([&](const RadarScan& scan, std::uint64_t dropped) {
     if (!corrector.knows(scan.header.source_id)) {
       node.fault(Fault::kWireUnknown, "scan of a radar that is not in the vehicle file");
+      node.nothing_to_publish();
       return;
     }
     corrected.publish_from(scan.header, Stage::kCorrector, [&](CorrectedScan& out) {

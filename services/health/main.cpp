@@ -23,6 +23,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   supervision.restored();
   health::Outlet outlet(node, vehicle, config.dds, supervision.faults(), key);
   runtime::Publisher<HealthReport> reports(node);
+  node.publishes_periodically(catalogue::TopicId::kHealthReport);
   node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
   node.on<EgoMotion>([&](const EgoMotion& m) { supervision.observe(m); });
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });

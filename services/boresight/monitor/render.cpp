@@ -8,6 +8,7 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
+#include "services/common/text/printable.hpp"
 
 namespace boresight::monitor {
 

@@ -15,8 +15,8 @@
 #include "services/common/recording/byte_source.hpp"
 #include "services/common/recording/line_reader.hpp"
 #include "services/common/runtime/config/reader.hpp"
-#include "services/common/text/columns.hpp"
 #include "services/common/text/near_names.hpp"
+#include "services/common/text/printable.hpp"
 
 namespace boresight::track {
 
@@ -69,7 +69,7 @@ std::string_view trimmed(std::string_view text) {
 
 std::string quoted_value(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  return "\"" + text::printable(std::string(text.substr(0, kLongest))) + (text.size() > kLongest ? "…\"" : "\"");
+  return "\"" + text::printable(text.substr(0, kLongest)) + (text.size() > kLongest ? "…\"" : "\"");
 }
 
 using Rows = std::vector<std::vector<double>>;

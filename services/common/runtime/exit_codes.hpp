@@ -11,6 +11,8 @@ inline constexpr int kFinding = 1;
 inline constexpr int kUsage = 2;
 /// Input that cannot be read, output that cannot be written, or a resource of the system that is missing.
 inline constexpr int kInputOutput = 3;
+/// A service: an error of the middleware after which it cannot continue. As EX_SOFTWARE of sysexits.h.
+inline constexpr int kMiddleware = 70;
 /// Added to the number of the signal that ended the program: 130 for Ctrl-C (SIGINT), 143 for SIGTERM.
 inline constexpr int kSignalBase = 128;
 

@@ -8,6 +8,8 @@
 #include <spdlog/sinks/systemd_sink.h>
 #include <spdlog/spdlog.h>
 
+#include "services/common/text/printable.hpp"
+
 namespace boresight::runtime::log {
 
 namespace {
@@ -45,7 +47,11 @@ void initialise(std::string_view process_name) {
 }
 
 void write(Level level, std::string_view text) {
-  spdlog::default_logger_raw()->log(to_spdlog(level), spdlog::string_view_t(text.data(), text.size()));
+  spdlog::default_logger_raw()->log(to_spdlog(level), text::printable(text));
+}
+
+void flush() {
+  spdlog::default_logger_raw()->flush();
 }
 
 }  // namespace boresight::runtime::log

@@ -12,7 +12,10 @@ enum class Level { kDebug, kInfo, kWarning, kError };
 
 /// Sets the name at the start of every line. Level from $BORESIGHT_LOG_LEVEL (debug, info, warning, error).
 void initialise(std::string_view process_name);
+/// Writes one line. Names and texts may come from outside: control characters and bytes that are not UTF-8 appear as ?.
 void write(Level level, std::string_view text);
+/// Before the process ends without the destructors of static objects.
+void flush();
 
 template <typename... Args>
 void debug(fmt::format_string<Args...> format, Args&&... args) {

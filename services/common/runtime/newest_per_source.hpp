@@ -2,6 +2,7 @@
 // measurement first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,10 @@ class NewestPerSource {
     const MessageHeader* const superseded = std::exchange(source.waiting, &message);
     if (superseded != nullptr) ++source.superseded;
     return superseded;
+  }
+
+  [[nodiscard]] bool is_any_waiting() const {
+    return std::any_of(sources_.begin(), sources_.end(), [](const Source& s) { return s.waiting != nullptr; });
   }
 
   /// The waiting message with the earliest measurement time, which then waits no more. Messages that arrived before

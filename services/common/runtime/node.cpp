@@ -15,9 +15,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "interfaces/messages/names.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/node_impl.hpp"
 #include "services/common/runtime/stop_signal.hpp"
@@ -44,7 +44,8 @@ void install_error_handler() {
           return;
         }
         log::error("unrecoverable error of the middleware: {}", name);
-        std::_Exit(70);
+        log::flush();
+        std::_Exit(exit_code::kMiddleware);
       });
   static auto guard = iox::ErrorHandler::setTemporaryErrorHandler(handler);
 }
@@ -92,7 +93,6 @@ Node::Node(catalogue::Service self, std::string_view name_suffix) : impl_(std::m
   wait_for_roudi();
   const std::string name = "boresight-" + std::string(catalogue::name_of(self)) + std::string(name_suffix);
   iox::runtime::PoshRuntime::initRuntime(iox::RuntimeName_t(iox::cxx::TruncateToCapacity, name.c_str(), name.size()));
-  impl_->waitset.emplace();
   impl_->status.incarnation_ns = monotonic_now_ns();
   impl_->status.pid = getpid();
   impl_->status.state = ServiceState::kStarting;
@@ -123,11 +123,15 @@ void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, RawHa
   options.queueCapacity = catalogue::queue_capacity(topic);
   options.historyRequest = topic.history;
   options.queueFullPolicy = iox::popo::QueueFullPolicy::DISCARD_OLDEST_DATA;
-  impl_->inputs.push_back(std::make_unique<Input>(detail::service_description(topic), options, version,
-                                                  topic.writers.size() > 1, std::move(handler)));
+  impl_->inputs.push_back(
+      std::make_unique<Input>(topic, detail::service_description(topic), options, version, std::move(handler)));
   // A service outside the data path polls its queues. Waking it would cost every writer a system call per message, and
   // the scan would compete with the other readers for a core.
   if (!catalogue::is_on_data_path(impl_->self)) return;
+  if (!impl_->waitset) {
+    impl_->waitset.emplace();
+    impl_->wait_timer.emplace(*impl_->waitset);
+  }
   impl_->waitset->attachState(impl_->inputs.back()->port, iox::popo::SubscriberState::HAS_DATA).or_else([](auto) {
     throw std::logic_error("too many inputs for one node");
   });
@@ -147,7 +151,8 @@ void Node::every(std::int64_t period_ns, std::function<void()> callback) {
 }
 
 void Node::on_readable(int descriptor, std::function<void()> callback) {
-  impl_->descriptors.push_back({descriptor, std::move(callback)});
+  impl_->descriptors.push_back({.descriptor = descriptor, .callback = std::move(callback), .watched = {}});
+  if (impl_->polled.size() < impl_->descriptors.size()) impl_->polled.resize(impl_->descriptors.size());
 }
 
 void Node::remove_descriptor(int descriptor) {
@@ -162,9 +167,9 @@ int Node::spin() {
   impl_->heartbeat();
   systemd::notify_ready();
   while (!stop_requested()) {
-    std::int64_t next_ns = monotonic_now_ns() + kLongestWait_ns;
-    for (const Timer& timer : impl_->timers) next_ns = std::min(next_ns, timer.next_ns);
-    impl_->wait(std::max<std::int64_t>(0, next_ns - monotonic_now_ns()));
+    std::int64_t end_ns = monotonic_now_ns() + kLongestWait_ns;
+    for (const Timer& timer : impl_->timers) end_ns = std::min(end_ns, timer.next_ns);
+    impl_->wait_until(end_ns);
     impl_->take_all();
     impl_->run_timers();
   }
@@ -210,6 +215,14 @@ SourceStatistics& Node::source_statistics(std::uint32_t source_id) {
   return entry;
 }
 
+void Node::nothing_to_publish() {
+  impl_->is_output_due = false;
+}
+
+void Node::publishes_periodically(catalogue::TopicId topic) {
+  impl_->is_periodic[static_cast<std::size_t>(topic)] = true;
+}
+
 void Node::set_degraded(bool degraded) {
   impl_->degraded = degraded;
 }
@@ -220,14 +233,15 @@ const MessageHeader* Node::Impl::take_from_queue(Input& input) {
     const auto& header = *static_cast<const MessageHeader*>(result.value());
     if (header.version != input.version) {
       ++status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
+      ++input.refused;
       input.port.release(&header);
       continue;
     }
     const std::uint64_t lost = input.gaps.observe(header);
     status.faults[static_cast<std::size_t>(Fault::kInputLost)] += lost;
     if (lost > 0) {
-      std::snprintf(status.last_fault.data(), status.last_fault.size(), "gap in the sequence of %s",
-                    input.port.getServiceDescription().getInstanceIDString().c_str());
+      std::snprintf(status.last_fault.data(), status.last_fault.size(), "gap in the sequence of %.*s",
+                    static_cast<int>(input.topic.name.size()), input.topic.name.data());
     }
     return &header;
   }
@@ -236,20 +250,28 @@ const MessageHeader* Node::Impl::take_from_queue(Input& input) {
 
 void Node::Impl::handle(Input& input, const MessageHeader& message, std::uint64_t dropped) {
   event_begin_ns = monotonic_now_ns();
+  const std::uint64_t outputs_before = status.outputs;
+  is_output_due = input.newest.has_value();
   {
     const CountAllocations counting(input.handled >= kWarmUpInputs);
     input.handler(&message, dropped);
   }
+  const std::int64_t end_ns = monotonic_now_ns();
+  if (status.outputs != outputs_before) {
+    input.answers.published();
+  } else if (is_output_due) {
+    input.answers.missed(end_ns, input.topic.deadline_ns);
+  }
   ++input.handled;
-  count(monotonic_now_ns() - event_begin_ns);
+  count(end_ns - event_begin_ns);
   input.port.release(&message);
 }
 
 void Node::Impl::drop(Input& input, const MessageHeader& message) {
   ++status.faults[static_cast<std::size_t>(Fault::kInputDropped)];
   std::snprintf(status.last_fault.data(), status.last_fault.size(),
-                "%.50s of radar %u superseded by a newer one: the service was too slow",
-                input.port.getServiceDescription().getInstanceIDString().c_str(), message.source_id);
+                "%.*s of radar %u superseded by a newer one: the service was too slow",
+                static_cast<int>(input.topic.name.size()), input.topic.name.data(), message.source_id);
   input.port.release(&message);
 }
 
@@ -299,27 +321,31 @@ void Node::Impl::run_timers() {
   }
 }
 
-void Node::Impl::wait(std::int64_t timeout_ns) {
-  if (!descriptors.empty()) {
-    wait_for_descriptors(timeout_ns);
+/// Waits for an input that wakes the service, or for a descriptor, at most until `end_ns` of the monotonic clock.
+void Node::Impl::wait_until(std::int64_t end_ns) {
+  const std::int64_t now_ns = monotonic_now_ns();
+  if (waitset && descriptors.empty()) {
+    wait_timer->end_wait_at(end_ns, now_ns);
+    static_cast<void>(waitset->wait());
     return;
   }
-  if (!catalogue::is_on_data_path(self)) timeout_ns = std::min(timeout_ns, kInputPollPeriod_ns);
-  const auto timeout = iox::units::Duration::fromNanoseconds(timeout_ns);
-  static_cast<void>(waitset->timedWait(timeout));
+  const std::int64_t longest_ns = inputs.empty() ? kLongestWait_ns : kInputPollPeriod_ns;
+  wait_for_descriptors(std::clamp<std::int64_t>(end_ns - now_ns, 0, longest_ns));
 }
 
-void Node::Impl::wait_for_descriptors(std::int64_t timeout_ns) {
-  if (!inputs.empty()) timeout_ns = std::min(timeout_ns, kInputPollPeriod_ns);
-  std::erase_if(descriptors, [](const Descriptor& entry) { return entry.descriptor < 0; });
-  constexpr std::size_t kMaxDescriptors = 64;
-  std::array<pollfd, kMaxDescriptors> polled{};
-  const std::size_t count_of_descriptors = std::min(descriptors.size(), kMaxDescriptors);
-  for (std::size_t i = 0; i < count_of_descriptors; ++i) {
+/// Fills the first entries of `polled`; returns the result of ppoll(), which waits by the monotonic clock.
+int Node::Impl::poll_descriptors(std::int64_t timeout_ns) {
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
     polled[i] = {.fd = descriptors[i].descriptor, .events = POLLIN, .revents = 0};
   }
   const timespec timeout{.tv_sec = timeout_ns / 1'000'000'000, .tv_nsec = timeout_ns % 1'000'000'000};
-  if (ppoll(polled.data(), count_of_descriptors, &timeout, nullptr) <= 0) return;
+  return ppoll(polled.data(), descriptors.size(), &timeout, nullptr);
+}
+
+void Node::Impl::wait_for_descriptors(std::int64_t timeout_ns) {
+  std::erase_if(descriptors, [](const Descriptor& entry) { return entry.descriptor < 0; });
+  const std::size_t count_of_descriptors = descriptors.size();
+  if (poll_descriptors(timeout_ns) <= 0) return;
   for (std::size_t i = 0; i < count_of_descriptors; ++i) {
     // By index and descriptor: a callback may add or remove entries.
     if (polled[i].revents == 0 || descriptors[i].descriptor != polled[i].fd) continue;
@@ -327,65 +353,6 @@ void Node::Impl::wait_for_descriptors(std::int64_t timeout_ns) {
     const std::function<void()>& callback = descriptors[i].callback;
     const CountAllocations counting(descriptors[i].handled++ >= kWarmUpInputs);
     callback();
-  }
-}
-
-void Node::Impl::count(std::int64_t processing_ns) {
-  ++status.inputs;
-  processing_sum_ns += static_cast<double>(processing_ns);
-  ++processing_count;
-  processing_max_ns = std::max(processing_max_ns, processing_ns);
-}
-
-void Node::Impl::count_latency(std::int64_t latency_ns) {
-  latency_sum_ns += static_cast<double>(latency_ns);
-  ++latency_count;
-  latency_max_ns = std::max(latency_max_ns, latency_ns);
-}
-
-void Node::Impl::heartbeat() {
-  systemd::stroke_watchdog();
-  log_new_faults();
-  if (!status_port) return;
-  if (status.state == ServiceState::kRunning && degraded) status.state = ServiceState::kDegraded;
-  if (status.state == ServiceState::kDegraded && !degraded) status.state = ServiceState::kRunning;
-  status.heap_allocations = counted_allocations();
-  status.processing_mean_us =
-      processing_count == 0 ? 0.0F
-                            : static_cast<float>(processing_sum_ns * 1e-3 / static_cast<double>(processing_count));
-  status.processing_max_us = static_cast<float>(static_cast<double>(processing_max_ns) * 1e-3);
-  status.latency_count = latency_count;
-  status.latency_mean_us =
-      latency_count == 0 ? 0.0F : static_cast<float>(latency_sum_ns * 1e-3 / static_cast<double>(latency_count));
-  status.latency_max_us = static_cast<float>(static_cast<double>(latency_max_ns) * 1e-3);
-  processing_sum_ns = latency_sum_ns = 0.0;
-  processing_count = latency_count = 0;
-  processing_max_ns = latency_max_ns = 0;
-  const Origin origin{.source_id = static_cast<std::uint32_t>(self),
-                      .measurement_time_ns = monotonic_now_ns(),
-                      .time_source = TimeSource::kUserArrival,
-                      .stage = std::nullopt,
-                      .begin_ns = 0};
-  status_port->publish(origin, [this](ServiceStatus& message) {
-    const MessageHeader header = message.header;
-    message = status;
-    message.header = header;
-  });
-}
-
-void Node::Impl::log_new_faults() {
-  // At most one line per heartbeat and kind of fault, with the sum since the last line. The next line of a kind comes
-  // after a growing number of events (1, 2, 4, …), so that a permanent fault does not fill the journal.
-  for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
-    const std::uint64_t total = status.faults[i];
-    if (total == 0 || (logged_faults[i] != 0 && total < 2 * logged_faults[i])) continue;
-    logged_faults[i] = total;
-    log::warning("{}: {} so far; latest: {}", name_of(static_cast<Fault>(i)), total, status.last_fault.data());
-  }
-  const std::uint64_t allocations = counted_allocations();
-  if (allocations > 2 * logged_allocations) {
-    log::warning("{} heap allocations on the data path", allocations);
-    logged_allocations = allocations;
   }
 }
 

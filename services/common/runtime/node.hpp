@@ -73,6 +73,12 @@ class Node {
   void count_input(std::int64_t processing_ns);
   /// The gateway's per-radar statistics; the entry is created on first use.
   [[nodiscard]] SourceStatistics& source_statistics(std::uint32_t source_id);
+  /// For a handler of on_newest() that rightly publishes nothing, for example because the radar is unknown. Without
+  /// this call the watchdog ends a service whose handlers publish nothing.
+  void nothing_to_publish();
+  /// The service publishes this topic with or without inputs. The watchdog ends a service that publishes none for
+  /// longer than the topic's deadline.
+  void publishes_periodically(catalogue::TopicId topic);
   /// A service is starting until spin(), then running. This call reports or clears the degraded state.
   void set_degraded(bool degraded);
 

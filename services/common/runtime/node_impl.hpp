@@ -13,10 +13,13 @@
 #include <iceoryx_posh/popo/untyped_publisher.hpp>
 #include <iceoryx_posh/popo/untyped_subscriber.hpp>
 #include <iceoryx_posh/popo/wait_set.hpp>
+#include <poll.h>
 
 #include "services/common/runtime/newest_per_source.hpp"
 #include "services/common/runtime/node.hpp"
 #include "services/common/runtime/ports.hpp"
+#include "services/common/runtime/progress_watch.hpp"
+#include "services/common/runtime/wait_timer.hpp"
 
 namespace boresight::runtime {
 
@@ -39,14 +42,17 @@ class GapDetector {
 };
 
 struct Input {
-  Input(const iox::capro::ServiceDescription& description, const iox::popo::SubscriberOptions& options,
-        std::uint32_t message_version, bool several_writers, std::function<void(const void*, std::uint64_t)> on_message)
-      : port(description, options),
+  Input(const catalogue::Topic& read_topic, const iox::capro::ServiceDescription& description,
+        const iox::popo::SubscriberOptions& options, std::uint32_t message_version,
+        std::function<void(const void*, std::uint64_t)> on_message)
+      : topic(read_topic),
+        port(description, options),
         queue_capacity(options.queueCapacity),
         version(message_version),
-        gaps(several_writers),
+        gaps(topic.writers.size() > 1),
         handler(std::move(on_message)) {}
 
+  const catalogue::Topic& topic;
   iox::popo::UntypedSubscriber port;
   std::uint64_t queue_capacity;
   std::uint32_t version;
@@ -54,6 +60,9 @@ struct Input {
   std::optional<NewestPerSource> newest;  // for on_newest()
   std::function<void(const void*, std::uint64_t)> handler;
   std::uint64_t handled = 0;
+  std::uint64_t refused = 0;  // of another layout version
+  WatchedInput watched;
+  WatchedOutput answers;  // for on_newest(): the outputs that follow from its messages
 };
 
 struct Timer {
@@ -66,6 +75,7 @@ struct Descriptor {
   int descriptor;
   std::function<void()> callback;
   std::uint64_t handled = 0;
+  WatchedInput watched;
 };
 
 struct Node::Impl {
@@ -78,23 +88,36 @@ struct Node::Impl {
   void drop(Input& input, const MessageHeader& message);
   void handle(Input& input, const MessageHeader& message, std::uint64_t dropped);
   void run_timers();
-  void wait(std::int64_t timeout_ns);
+  void wait_until(std::int64_t end_ns);
   void wait_for_descriptors(std::int64_t timeout_ns);
+  [[nodiscard]] int poll_descriptors(std::int64_t timeout_ns);
   void count(std::int64_t processing_ns);
   void count_latency(std::int64_t latency_ns);
   void heartbeat();
+  void stroke_watchdog();
+  void look_at_inputs();
+  void look_at_outputs();
   void log_new_faults();
+  [[nodiscard]] WatchedOutput& output(catalogue::TopicId topic) { return outputs[static_cast<std::size_t>(topic)]; }
 
   catalogue::Service self;
-  std::optional<iox::popo::WaitSet<>> waitset;  // made after the connection to RouDi
-  std::vector<std::unique_ptr<Input>> inputs;   // in order of priority
+  std::optional<iox::popo::WaitSet<>> waitset;  // with inputs that wake the service only, as is the timer
+  std::optional<WaitTimer> wait_timer;
+  std::vector<std::unique_ptr<Input>> inputs;  // in order of priority
   std::vector<Timer> timers;
   std::deque<Descriptor> descriptors;  // a callback may add one while it runs
+  std::vector<pollfd> polled;          // room for all descriptors
   std::optional<Publisher<ServiceStatus>> status_port;
 
   std::int64_t event_begin_ns = 0;
   bool stopping = false;
   int exit_code = 0;
+
+  ProgressWatch watch;
+  std::array<WatchedOutput, catalogue::kNumberOfTopics> outputs{};
+  std::array<bool, catalogue::kNumberOfTopics> is_periodic{};
+  bool is_output_due = false;  // by the handler that runs
+  bool is_stroke_withheld = false;
 
   ServiceStatus status{};
   bool degraded = false;

@@ -41,6 +41,7 @@ void* loan(PublisherPort& port) {
   auto result = port.port.loan(static_cast<std::uint32_t>(port.topic.payload_bytes), kCacheLine);
   if (result.has_error()) {
     port.node.fault(Fault::kLoanFailed, port.topic.name);
+    port.node.impl().output(port.topic.id).missed(monotonic_now_ns(), port.topic.deadline_ns);
     return nullptr;
   }
   return result.value();
@@ -70,6 +71,7 @@ void send(PublisherPort& port, void* payload, std::uint32_t version, const Origi
     if (arrival_ns > 0 && arrival_ns <= end_ns) node.count_latency(end_ns - arrival_ns);
   }
   port.port.publish(payload);
+  node.output(port.topic.id).published();
   if (port.topic.id != catalogue::TopicId::kServiceStatus) ++node.status.outputs;
 }
 

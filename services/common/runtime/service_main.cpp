@@ -10,6 +10,7 @@
 #include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/stop_signal.hpp"
+#include "services/common/text/printable.hpp"
 
 namespace boresight::runtime {
 
@@ -24,7 +25,7 @@ int service_main(catalogue::Service self, int argc, char** argv, const Load& loa
   app.add_flag("--check", check, "Checks the configuration and ends");
   app.footer(
       "Exit codes: 0 stopped by a signal, or the configuration is valid; 1 failure at run time; 2 wrong command line "
-      "or configuration");
+      "or configuration; 70 error of the middleware");
   app.set_version_flag("--version", name + " " + BORESIGHT_VERSION);
   try {
     app.parse(argc, argv);
@@ -46,7 +47,8 @@ int service_main(catalogue::Service self, int argc, char** argv, const Load& loa
     log::info("stopped");
     return result;
   } catch (const config::Error& error) {
-    std::cerr << error.what() << '\n';
+    // Also an error that is found only after the start: a restart would not help.
+    std::cerr << text::printable(error.what(), text::LineBreaks::kKept) << '\n';
     return exit_code::kUsage;
   } catch (const std::exception& error) {
     if (stop_signalled()) return exit_code::kSuccess;

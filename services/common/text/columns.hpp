@@ -20,13 +20,4 @@ namespace boresight::text {
   return std::string(text) + std::string(used < width ? width - used : 1, ' ');
 }
 
-/// The text with ? in place of control characters, which would move the cursor or begin a line.
-[[nodiscard]] inline std::string printable(std::string text) {
-  constexpr char kDelete = 0x7F;
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == kDelete) c = '?';
-  }
-  return text;
-}
-
 }  // namespace boresight::text

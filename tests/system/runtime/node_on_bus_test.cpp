@@ -115,6 +115,21 @@ TEST_F(RuntimeOnBus, StopsWithin200MillisecondsOfSigterm) {
   }
 }
 
+TEST_F(RuntimeOnBus, TimersOfAServiceThatInputsWakeKeepTheirPeriod) {
+  Shared<std::uint64_t> ticks;
+  Child service([&] {
+    Node node(Service::kTracker);
+    node.on<ClassifiedScan>([](const ClassifiedScan&) {});
+    node.every(5 * kMillisecond_ns, [&] { ++*ticks; });
+    return node.spin();
+  });
+  ASSERT_TRUE(eventually(5.0, [&] { return *ticks > 0; }));
+  const std::uint64_t before = *ticks;
+  harness::sleep_s(1.0);
+  EXPECT_GE(*ticks - before, 100u) << "of 200, without any input";
+  EXPECT_EQ(service.stop(), 0);
+}
+
 TEST_F(RuntimeOnBus, RefusesWritersAndReadersThatTheCatalogueDoesNotList) {
   Child service([] {
     Node node(Service::kTracker);

@@ -8,7 +8,7 @@
 #include "interfaces/messages/header.hpp"
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/recording/ip_address.hpp"
-#include "services/common/text/columns.hpp"
+#include "services/common/text/printable.hpp"
 
 namespace boresight::config {
 
