@@ -12,6 +12,7 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
+#include "services/common/text/printable.hpp"
 #include "services/health/core/faults/event.hpp"
 #include "services/health/core/faults/status.hpp"
 
