@@ -18,9 +18,8 @@ namespace {
 // No descriptor reports the end of any child, so the supervisor polls. This period costs little and is short compared
 // with the duration of a restart.
 constexpr std::int64_t kLook_ns = 10'000'000;
-// The most failures of RouDi that count for the delay of a domain restart: half a second, so that data are back within
-// two seconds also after the fifth failure in a row.
-constexpr std::uint32_t kMaxCountedFailures = 3;
+// The most failed starts in a row that count for the delay of a domain restart, which is then one second.
+constexpr std::uint32_t kMaxCountedFailures = 4;
 
 }  // namespace
 
@@ -167,10 +166,11 @@ void Supervisor::poll(std::int64_t timeout_ns) {
 void Supervisor::restart_domain(const std::string& reason) {
   note(EventKind::kDomainRestart, "", 0, reason);
   ++domain_restarts_;
+  // A domain that was ready is back as fast as possible. One that fails while it starts is tried later each time.
+  failed_starts_ = domain_ready_ ? 0 : failed_starts_ + 1;
   stop_domain(false);
   for (Child& child : services_) child.failures = 0;  // their end is no failure of theirs
-  // Every exit of RouDi counts, whatever its cause: at once the first time, later after that.
-  sleep_ns(restart_delay_ns(std::min(roudi_.failures, kMaxCountedFailures)));
+  sleep_ns(restart_delay_ns(std::min(failed_starts_, kMaxCountedFailures)));
   try {
     start_domain({});
   } catch (const std::runtime_error& error) {

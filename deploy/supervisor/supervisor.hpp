@@ -178,6 +178,7 @@ class Supervisor {
   bool domain_ready_ = false;
   bool was_ready_ = false;  ///< the domain, once
   std::uint32_t domain_restarts_ = 0;
+  std::uint32_t failed_starts_ = 0;  ///< domain restarts in a row before the domain was ready
 };
 
 }  // namespace boresight::supervisor
