@@ -121,10 +121,10 @@ class Keeper {
       report("RouDi hangs and is ended: " + *reason);
       return false;
     }
-    if (!progress_.is_judgeable() && !is_reported_ && !roudi_.has_ended()) {
+    if (!is_checked_ && !progress_.is_judgeable()) {
       report("RouDi's periodic threads are not found; its progress is not watched");
-      is_reported_ = true;
     }
+    is_checked_ = true;
     sd_notify(0, "WATCHDOG=1");
     return true;
   }
@@ -136,7 +136,7 @@ class Keeper {
   std::int64_t observed_ns_ = 0;
   std::int64_t stop_at_ns_ = 0;  ///< when RouDi is killed, if it is to stop; else 0
   bool is_ready_ = false;
-  bool is_reported_ = false;
+  bool is_checked_ = false;  ///< whether the periodic threads are found
 };
 
 }  // namespace
