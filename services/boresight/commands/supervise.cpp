@@ -42,6 +42,15 @@ std::string refusal_of(const std::string& service, const std::filesystem::path& 
          supervisor::last_lines(log, kLines);
 }
 
+/// Without room for its own output, too, the domain runs on.
+void print_if_possible(const std::string& line) {
+  try {
+    terminal::print(line);
+  } catch (const terminal::OutputError&) {
+    // There is no other place to report it.
+  }
+}
+
 int run_supervise(SuperviseOptions options) {
   static_cast<void>(options.configuration.vehicle());  // a wrong configuration is reported before anything starts
   options.domain.config_directory = options.configuration.directory;
@@ -68,9 +77,9 @@ int run_supervise(SuperviseOptions options) {
   const auto print_new_events = [&domain, &printed] {
     for (; printed < domain.events().size(); ++printed) {
       const supervisor::Event& event = domain.events()[printed];
-      terminal::print(fmt::format("{:.3f} {} {} {} {}\n", static_cast<double>(event.time_ns) * 1e-9,
-                                  name_of(event.kind), event.process.empty() ? "domain" : event.process, event.pid,
-                                  event.detail));
+      print_if_possible(fmt::format("{:.3f} {} {} {} {}\n", static_cast<double>(event.time_ns) * 1e-9,
+                                    name_of(event.kind), event.process.empty() ? "domain" : event.process, event.pid,
+                                    event.detail));
     }
   };
   try {

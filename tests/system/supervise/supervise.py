@@ -130,6 +130,19 @@ def check_full_disk():
     subprocess.run(["umount", str(logs)], check=True)
 
 
+def check_full_output():
+    with open("/dev/full", "wb") as full:
+        process = subprocess.Popen([BORESIGHT, "supervise", "--replay", "--vehicle", "demo", "--config",
+                                    str(SOURCE / "config"), "--logs", str(TMP / "logs")],
+                                   stdin=subprocess.DEVNULL, stdout=full, stderr=full)
+    log = TMP / "logs" / "health.log"
+    log.unlink()
+    check("without room for its own output, a domain starts",
+          until(lambda: log.exists() and "started" in log.read_text()) and process.poll() is None, process.poll())
+    process.send_signal(signal.SIGTERM)
+    check("and stops in order", process.wait(PATIENCE_S) == 0, process.poll())
+
+
 def check_broken_configuration():
     config = TMP / "config"
     shutil.copytree(SOURCE / "config", config)
@@ -175,8 +188,8 @@ def check_two_domains():
 
 def main():
     TMP.mkdir()
-    for story in (check_killed_supervisor, check_hung_processes, check_full_disk, check_broken_configuration,
-                  check_two_domains):
+    for story in (check_killed_supervisor, check_hung_processes, check_full_disk, check_full_output,
+                  check_broken_configuration, check_two_domains):
         print(f"# {story.__name__}", flush=True)
         story()
     return 1 if failures else 0
