@@ -33,7 +33,8 @@ DomainConfig domain_of_catalogue(const DomainOptions& options, const std::filesy
       spec.command.arguments.insert(spec.command.arguments.end(), {"--vehicle", options.vehicle});
     }
     spec.command.environment = options.environment;
-    spec.command.environment.emplace_back("BORESIGHT_RUNTIME_DIR", options.run_directory.string());
+    spec.command.environment.emplace_back("BORESIGHT_RUNTIME_DIR",
+                                          std::filesystem::absolute(options.run_directory).string());
     config.services.push_back(std::move(spec));
   }
   return config;

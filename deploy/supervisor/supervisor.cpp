@@ -30,6 +30,7 @@ std::string_view name_of(EventKind kind) {
 }
 
 Supervisor::Supervisor(DomainConfig config) : config_(std::move(config)) {
+  config_.run_directory = std::filesystem::absolute(config_.run_directory);  // sd_notify ignores a relative path
   roudi_.spec.name = "roudi";
   roudi_.spec.command = config_.roudi;
   for (const ProcessSpec& spec : config_.services) services_.push_back({.spec = spec});

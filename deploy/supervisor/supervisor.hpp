@@ -115,6 +115,7 @@ class Supervisor {
   [[nodiscard]] std::uint32_t domain_restarts() const;
   /// 0 if it is not running.
   [[nodiscard]] pid_t pid_of(std::string_view name) const;
+  /// Of RouDi's wrapper, which runs RouDi as its only child.
   [[nodiscard]] pid_t roudi_pid() const;
 
  private:

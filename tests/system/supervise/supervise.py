@@ -143,6 +143,14 @@ def check_full_output():
     check("and stops in order", process.wait(PATIENCE_S) == 0, process.poll())
 
 
+def check_relative_folders():
+    os.chdir(TMP)
+    domain = Domain("--run-dir", "run", logs="relative_logs")
+    check("a domain with relative folders starts", domain.is_ready(), domain.text())
+    check("in its run directory", (TMP / "run" / "replay.sock").exists(), os.listdir(TMP))
+    check("the domain stops in order", domain.stop() == 0, domain.text())
+
+
 def check_broken_configuration():
     config = TMP / "config"
     shutil.copytree(SOURCE / "config", config)
@@ -189,7 +197,7 @@ def check_two_domains():
 def main():
     TMP.mkdir()
     for story in (check_killed_supervisor, check_hung_processes, check_full_disk, check_full_output,
-                  check_broken_configuration, check_two_domains):
+                  check_relative_folders, check_broken_configuration, check_two_domains):
         print(f"# {story.__name__}", flush=True)
         story()
     return 1 if failures else 0
