@@ -15,21 +15,26 @@ std::filesystem::path binaries_folder() {
 
 DomainConfig domain_of_catalogue(const DomainOptions& options, const std::filesystem::path& pools_file) {
   DomainConfig config;
-  config.roudi.arguments = {"iox-roudi", "-m", "off", "-k", "1", "-c", pools_file.string()};
+  // Monitoring off: it would remove a live service that got no processor time for 1.5 s.
+  config.roudi.arguments = {
+      (options.binaries / "boresight-roudi").string(), "iox-roudi", "-m", "off", "-k", "1", "-c", pools_file.string()};
   config.run_directory = options.run_directory;
   config.log_directory = options.log_directory;
+  config.config_directory = options.config_directory;
   for (std::size_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
     const std::string name(catalogue::kServiceNames[i]);
     ProcessSpec spec;
     spec.name = name;
     spec.runtime_name = "boresight-" + name;
+    spec.is_on_data_path = catalogue::is_on_data_path(static_cast<catalogue::Service>(i));
     spec.command.arguments = {(options.binaries / spec.runtime_name).string(), "--config",
                               options.config_directory.string()};
     if (!options.vehicle.empty()) {
       spec.command.arguments.insert(spec.command.arguments.end(), {"--vehicle", options.vehicle});
     }
     spec.command.environment = options.environment;
-    spec.command.environment.emplace_back("BORESIGHT_RUNTIME_DIR", options.run_directory.string());
+    spec.command.environment.emplace_back("BORESIGHT_RUNTIME_DIR",
+                                          std::filesystem::absolute(options.run_directory).string());
     config.services.push_back(std::move(spec));
   }
   return config;

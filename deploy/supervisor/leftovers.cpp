@@ -22,9 +22,21 @@ std::optional<std::string> running_roudi(const Places& places) {
   return std::nullopt;
 }
 
-ino_t management_inode(const Places& places) {
-  struct stat status {};
-  return stat((places.shared_memory / "iceoryx_mgmt").c_str(), &status) == 0 ? status.st_ino : 0;
+void wait_for_end_of_roudi(const Places& places) {
+  constexpr int kPatience_ms = 500;
+  constexpr int kLook_ms = 5;
+  for (int waited_ms = 0; waited_ms < kPatience_ms && running_roudi(places); waited_ms += kLook_ms) {
+    usleep(kLook_ms * 1000);
+  }
+}
+
+std::vector<ino_t> segment_inodes(const Places& places, const std::vector<std::string>& segments) {
+  std::vector<ino_t> inodes;
+  for (const std::string& segment : segments) {
+    struct stat status {};
+    inodes.push_back(stat((places.shared_memory / segment).c_str(), &status) == 0 ? status.st_ino : 0);
+  }
+  return inodes;
 }
 
 std::vector<std::string> reserved_segments(const std::string& roudi_output) {

@@ -20,8 +20,11 @@ struct Places {
 /// <sockets>/iox-unique-roudi.lock while it lives.
 [[nodiscard]] std::optional<std::string> running_roudi(const Places& places);
 
-/// Identity of the management memory, which changes when another RouDi recreates it; 0 if there is none.
-[[nodiscard]] ino_t management_inode(const Places& places);
+/// Waits until no RouDi holds the lock, but not longer than the end of a killed RouDi takes, which unmaps its memory.
+void wait_for_end_of_roudi(const Places& places);
+
+/// Identities of shared memories, which change when another RouDi recreates them; 0 for one that does not exist.
+[[nodiscard]] std::vector<ino_t> segment_inodes(const Places& places, const std::vector<std::string>& segments);
 
 /// Names of the shared memories that RouDi reserved, from its output.
 [[nodiscard]] std::vector<std::string> reserved_segments(const std::string& roudi_output);

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 
 #include <fcntl.h>
@@ -69,7 +70,7 @@ pid_t spawn(const Command& command, const std::filesystem::path& log_file) {
   int log = -1;
   if (!log_file.empty()) {
     log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (log < 0) throw std::system_error(errno, std::generic_category(), log_file.string());
+    if (log < 0) log = open("/dev/null", O_WRONLY | O_CLOEXEC);
   }
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0) {
@@ -90,6 +91,16 @@ pid_t spawn(const Command& command, const std::filesystem::path& log_file) {
   close(report[0]);
   if (error != 0) throw std::system_error(error, std::generic_category(), "cannot start " + command.arguments[0]);
   return pid;
+}
+
+bool is_running(pid_t pid) {
+  // The state is the first field behind the name, which is in parentheses and may contain anything.
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  if (!std::getline(file, line)) return false;
+  const std::size_t name_end = line.rfind(')');
+  return name_end != std::string::npos && name_end + 2 < line.size() && line[name_end + 2] != 'Z' &&
+         line[name_end + 2] != 'X';
 }
 
 std::string describe_exit(int wait_status) {

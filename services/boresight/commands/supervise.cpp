@@ -10,11 +10,16 @@
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/terminal/output_file.hpp"
+#include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 
 namespace boresight {
 
 namespace {
+
+constexpr double kMinLogSize_mb = 0.01;
+constexpr double kMaxLogSize_mb = 10000.0;
+constexpr std::size_t kMaxLogFiles = 100;
 
 struct SuperviseOptions {
   supervisor::DomainOptions domain{.binaries = {},
@@ -24,8 +29,27 @@ struct SuperviseOptions {
                                    .log_directory = "logs",
                                    .environment = {}};
   runtime::Configuration configuration;
+  double log_size_mb = 10.0;
+  std::size_t log_files = 3;
   bool replay = false;
 };
+
+/// Why a service cannot run, in its own words.
+std::string refusal_of(const std::string& service, const std::filesystem::path& logs) {
+  constexpr std::size_t kLines = 5;
+  const std::filesystem::path log = logs / (service + ".log");
+  return service + " refuses its configuration; the end of " + log.string() + ":\n" +
+         supervisor::last_lines(log, kLines);
+}
+
+/// Without room for its own output, too, the domain runs on.
+void print_if_possible(const std::string& line) {
+  try {
+    terminal::print(line);
+  } catch (const terminal::OutputError&) {
+    // There is no other place to report it.
+  }
+}
 
 int run_supervise(SuperviseOptions options) {
   static_cast<void>(options.configuration.vehicle());  // a wrong configuration is reported before anything starts
@@ -44,14 +68,18 @@ int run_supervise(SuperviseOptions options) {
   }
   terminal::write_file(pools, roudi::to_toml(roudi::single_segment()));
 
-  supervisor::Supervisor domain(supervisor::domain_of_catalogue(options.domain, pools));
+  supervisor::DomainConfig config = supervisor::domain_of_catalogue(options.domain, pools);
+  constexpr double kBytesPerMegabyte = 1e6;
+  config.logs = {.max_bytes = static_cast<std::uintmax_t>(options.log_size_mb * kBytesPerMegabyte),
+                 .kept_files = options.log_files};
+  supervisor::Supervisor domain(config);
   std::size_t printed = 0;
   const auto print_new_events = [&domain, &printed] {
     for (; printed < domain.events().size(); ++printed) {
       const supervisor::Event& event = domain.events()[printed];
-      terminal::print(fmt::format("{:.3f} {} {} {} {}\n", static_cast<double>(event.time_ns) * 1e-9,
-                                  name_of(event.kind), event.process.empty() ? "domain" : event.process, event.pid,
-                                  event.detail));
+      print_if_possible(fmt::format("{:.3f} {} {} {} {}\n", static_cast<double>(event.time_ns) * 1e-9,
+                                    name_of(event.kind), event.process.empty() ? "domain" : event.process, event.pid,
+                                    event.detail));
     }
   };
   try {
@@ -59,12 +87,15 @@ int run_supervise(SuperviseOptions options) {
   } catch (const std::runtime_error&) {
     if (!runtime::stop_signalled()) throw;
   }
-  while (!runtime::stop_signalled()) {
+  while (!runtime::stop_signalled() && domain.refused_by().empty()) {
     print_new_events();
     domain.poll(50'000'000);
   }
   domain.stop();
   print_new_events();
+  if (!domain.refused_by().empty()) {
+    throw config::Error(refusal_of(domain.refused_by(), options.domain.log_directory));
+  }
   return exit_code_after_signal(exit_code::kSuccess);
 }
 
@@ -81,6 +112,14 @@ void add_supervise_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--run-dir", options->domain.run_directory, "Folder for sockets; default: a new one in /tmp")
       ->type_name("DIR");
+  command->add_option("--log-size", options->log_size_mb, "A longer log is moved to <name>.log.1")
+      ->type_name("MB")
+      ->check(CLI::Range(kMinLogSize_mb, kMaxLogSize_mb))
+      ->capture_default_str();
+  command->add_option("--log-files", options->log_files, "Number of older logs that are kept of each process")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{0}, kMaxLogFiles))
+      ->capture_default_str();
   command->add_flag("--replay", options->replay, "The gateway takes its input from boresight-replay");
   on_call(
       *command, exit_code, {"supervise --vehicle demo --replay", "stopped by SIGTERM", ""},

@@ -82,6 +82,48 @@ for service in "${services[@]}"; do
 done
 check "and the new domain works" within 10 heartbeats_flow
 
+# broker: RouDi itself, which the unit's main process runs as its child.
+broker() { pgrep -P "$(pid_of roudi)"; }
+for fault in KILL STOP; do
+  roudi=$(pid_of roudi)
+  tracker=$(pid_of tracker)
+  kill -$fault "$(broker)"
+  check "RouDi behind its wrapper, SIG$fault: a new one is started" within 5 is_new roudi "$roudi"
+  check "with the domain" within 10 is_new tracker "$tracker"
+  check "which works" within 10 heartbeats_flow
+done
+
+# A broken configuration. Replaced at once, as an editor does.
+configuration=/etc/boresight/services/ghost_filter.toml
+cp "$configuration" /tmp/whole.toml
+{ cat "$configuration"; echo '[nonsense]'; } > "$configuration.new"
+mv "$configuration.new" "$configuration"
+tracker=$(pid_of tracker)
+kill -TERM "$(pid_of ghost_filter)"
+check "a service with a broken configuration fails" within 5 systemctl is-failed -q boresight-ghost_filter.service
+restarts=$(systemctl show -P NRestarts boresight-ghost_filter.service)
+sleep 1
+check "and is not tried again" [ "$(systemctl show -P NRestarts boresight-ghost_filter.service)" = "$restarts" ]
+check "the others go on" [ "$(pid_of tracker)" = "$tracker" ]
+cp /tmp/whole.toml "$configuration"
+systemctl start boresight-ghost_filter.service
+check "mended, it is started by hand" within 5 systemctl is-active -q boresight-ghost_filter.service
+
+# A service off the data path that is not ready in time costs nobody else. A drop-in replaces its program.
+mkdir -p /run/systemd/system/boresight-health.service.d
+printf '[Service]\nExecStart=\nExecStart=/bin/sleep 100\nTimeoutStartSec=1\n' \
+  > /run/systemd/system/boresight-health.service.d/late.conf
+systemctl daemon-reload
+roudi=$(pid_of roudi)
+systemctl --no-block restart boresight-health.service
+restarted_thrice() { [ "$(systemctl show -P NRestarts boresight-health.service)" -ge 3 ]; }
+check "a service off the data path that is not ready in time is started again" within 10 restarted_thrice
+check "alone" [ "$(pid_of tracker)$(pid_of roudi)" = "$tracker$roudi" ]
+rm -r /run/systemd/system/boresight-health.service.d
+systemctl daemon-reload
+systemctl restart boresight-health.service
+check "with its own program it becomes active" within 10 systemctl is-active -q boresight-health.service
+
 systemctl stop boresight.target
 check "stopping the target leaves no process and no shared memory" within 10 nothing_left
 

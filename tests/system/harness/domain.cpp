@@ -25,7 +25,7 @@ const fs::path kBinaries = BORESIGHT_BINARY_DIR;
 const fs::path kConfig = fs::path(BORESIGHT_SOURCE_DIR) / "config";
 
 supervisor::DomainConfig configuration(const std::string& vehicle, const std::vector<std::string>& without,
-                                       const fs::path& folder) {
+                                       const fs::path& folder, const std::vector<supervisor::ProcessSpec>& more) {
   fs::create_directories(kFolder / "logs");
   const fs::path pools = kFolder / "logs" / "roudi.toml";
   std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
@@ -39,13 +39,15 @@ supervisor::DomainConfig configuration(const std::string& vehicle, const std::ve
   std::erase_if(config.services, [&](const supervisor::ProcessSpec& spec) {
     return std::find(without.begin(), without.end(), spec.name) != without.end();
   });
+  config.services.insert(config.services.end(), more.begin(), more.end());
   return config;
 }
 
 }  // namespace
 
-Domain::Domain(const std::string& vehicle, const std::vector<std::string>& without, const fs::path& config)
-    : supervisor_(configuration(vehicle, without, config)) {}
+Domain::Domain(const std::string& vehicle, const std::vector<std::string>& without, const fs::path& config,
+               const std::vector<supervisor::ProcessSpec>& more)
+    : supervisor_(configuration(vehicle, without, config, more)) {}
 
 void Domain::start() {
   supervisor_.start();

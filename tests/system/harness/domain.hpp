@@ -18,9 +18,10 @@ namespace boresight::harness {
 /// RouDi and every service, listening to boresight-replay. Logs and sockets lie under /tmp/domain.
 class Domain {
  public:
-  /// Services in `without` are not started. `config`: the folder of the configuration.
+  /// Services in `without` are not started, those in `more` in addition. `config`: the folder of the configuration.
   explicit Domain(const std::string& vehicle, const std::vector<std::string>& without = {},
-                  const std::filesystem::path& config = shipped_configuration());
+                  const std::filesystem::path& config = shipped_configuration(),
+                  const std::vector<supervisor::ProcessSpec>& more = {});
 
   /// Starts it and waits until every service is ready; throws if that takes longer than 20 s.
   void start();

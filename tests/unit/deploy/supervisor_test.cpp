@@ -1,11 +1,8 @@
 #include "deploy/supervisor/supervisor.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <filesystem>
+#include <array>
 #include <fstream>
-#include <functional>
 #include <sstream>
 
 #include <fcntl.h>
@@ -14,76 +11,10 @@
 #include <unistd.h>
 
 #include "deploy/supervisor/domain.hpp"
+#include "tests/unit/deploy/fake_domain.hpp"
 
 namespace boresight::supervisor {
 namespace {
-
-using std::filesystem::path;
-
-std::int64_t milliseconds_now() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-/// A domain of fake processes in a temporary folder.
-class SupervisorTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = ::testing::TempDir() + "supervisor-XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    directory_ = pattern;
-    std::filesystem::create_directories(bus());
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  [[nodiscard]] path bus() const { return directory_ / "bus"; }
-
-  [[nodiscard]] ProcessSpec service(const std::string& name, const std::string& option = "-") const {
-    return {.name = name,
-            .command = {.arguments = {FAKE_PROCESS, "service", bus().string(), option, "socket-" + name},
-                        .environment = {}},
-            .runtime_name = "socket-" + name};
-  }
-  [[nodiscard]] DomainConfig domain(std::vector<ProcessSpec> services, const std::string& roudi_option = "-") const {
-    DomainConfig config;
-    config.roudi = {.arguments = {FAKE_PROCESS, "roudi", bus().string(), roudi_option}, .environment = {}};
-    config.services = std::move(services);
-    config.run_directory = directory_ / "run";
-    config.log_directory = directory_ / "logs";
-    config.places = {.shared_memory = bus(), .sockets = bus()};
-    config.stop_timeout_ns = 300'000'000;
-    return config;
-  }
-
-  /// Polls until `condition` holds; false after five seconds.
-  static bool poll_until(Supervisor& supervisor, const std::function<bool()>& condition) {
-    const std::int64_t deadline_ms = milliseconds_now() + 5000;
-    while (!condition()) {
-      if (milliseconds_now() > deadline_ms) return false;
-      supervisor.poll(5'000'000);
-    }
-    return true;
-  }
-  static bool become_ready(Supervisor& supervisor) {
-    return poll_until(supervisor, [&] { return supervisor.all_ready(); });
-  }
-  static std::size_t count(const Supervisor& supervisor, EventKind kind, const std::string& process) {
-    return static_cast<std::size_t>(
-        std::count_if(supervisor.events().begin(), supervisor.events().end(),
-                      [&](const Event& e) { return e.kind == kind && e.process == process; }));
-  }
-  [[nodiscard]] std::vector<std::string> files_on_bus() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(bus())) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  static bool is_gone(pid_t pid) { return kill(pid, 0) != 0 && errno == ESRCH; }
-
-  path directory_;
-};
 
 TEST_F(SupervisorTest, StartsRoudiFirstAndStopLeavesNothing) {
   std::ofstream(bus() / "foreign") << "not ours";
@@ -267,33 +198,6 @@ TEST_F(SupervisorTest, MissingProgramIsReported) {
   supervisor.stop();
   Supervisor without(config);
   EXPECT_THROW(without.start(), std::runtime_error);
-}
-
-TEST_F(SupervisorTest, KilledSupervisorLeavesNoProcessAndNoFile) {
-  int report[2];
-  ASSERT_EQ(pipe(report), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    Supervisor supervisor(domain({service("a", "deaf"), service("b")}));
-    supervisor.start();
-    if (!become_ready(supervisor)) _exit(1);
-    const std::array<pid_t, 3> pids = {supervisor.roudi_pid(), supervisor.pid_of("a"), supervisor.pid_of("b")};
-    if (write(report[1], pids.data(), sizeof(pids)) != static_cast<ssize_t>(sizeof(pids))) _exit(1);
-    for (;;) supervisor.poll(100'000'000);
-  }
-  std::array<pid_t, 3> pids{};
-  ASSERT_EQ(read(report[0], pids.data(), sizeof(pids)), static_cast<ssize_t>(sizeof(pids)));
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
-  const std::int64_t deadline_ms = milliseconds_now() + 5000;
-  const auto all_gone = [&] { return std::all_of(pids.begin(), pids.end(), is_gone) && files_on_bus().empty(); };
-  while (!all_gone() && milliseconds_now() < deadline_ms) usleep(20'000);
-  for (const pid_t pid : pids) EXPECT_TRUE(is_gone(pid));
-  EXPECT_THAT(files_on_bus(), ::testing::IsEmpty());
-  while (std::filesystem::exists(directory_ / "run") && milliseconds_now() < deadline_ms) usleep(20'000);
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "run"));
-  close(report[0]);
-  close(report[1]);
 }
 
 TEST_F(SupervisorTest, RunDirectoryThatAKilledOneLeftIsNotTaken) {

@@ -1,5 +1,6 @@
 // Plays RouDi or a service for the supervisor's tests: `fake_domain_process roudi DIR [option…]` behaves towards the
-// outside as iox-roudi does (files, lock, ready line), `… service DIR [option…]` as a service does (READY datagram).
+// outside as boresight-roudi does (files, lock, READY and WATCHDOG datagrams), `… service DIR [option…]` as a service
+// does (READY and WATCHDOG datagrams).
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -19,14 +20,15 @@ namespace {
 
 volatile std::sig_atomic_t stopped = 0;
 
-void say_ready() {
+void notify(const std::string& text) {
   const char* const path = std::getenv("NOTIFY_SOCKET");
   if (path == nullptr) return;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::strncpy(address.sun_path, path, sizeof(address.sun_path) - 1);
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sendto(descriptor, "READY=1", 7, 0, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
+  sendto(descriptor, text.data(), text.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&address),
+         sizeof(address));
   close(descriptor);
 }
 
@@ -44,6 +46,15 @@ int main(int argc, char** argv) {
   const std::string directory = argv[2];
   const std::string option = argc > 3 ? argv[3] : "";
   if (option == "fail") return 3;
+  if (option == "refuse") {
+    std::cerr << "first line\nservices/x.toml:3: key must be positive" << std::endl;
+    return 2;
+  }
+  if (option == "refuse_later" && !first_time(directory, argv[4]) &&
+      !std::ifstream(directory + "/../config/mended").is_open()) {
+    std::cerr << "services/x.toml:4: unknown key" << std::endl;
+    return 2;
+  }
   std::signal(
       SIGTERM, option == "deaf" ? SIG_IGN : +[](int) { stopped = 1; });
   if (kind == "roudi") {
@@ -54,14 +65,18 @@ int main(int argc, char** argv) {
       const std::string file = directory + "/" + name;
       unlink(file.c_str());
       std::ofstream(file) << "memory";
-      std::cout << "Reserving 6 bytes in the shared memory [" << name << "]\n";
     }
     std::ofstream(directory + "/roudi.lock") << "";
-    std::cout << "RouDi is ready for clients" << std::endl;
+    notify("READY=1\nX_SEGMENTS=iceoryx_mgmt some_group");
   } else {
     std::ofstream(directory + "/" + argv[4]) << "socket";
-    if (option != "hang_later" || first_time(directory, argv[4])) say_ready();
+    if (option != "hang_later" || first_time(directory, argv[4])) notify("READY=1");
   }
-  while (stopped == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const bool strokes = option != "mute_once" || !first_time(directory, kind);
+  for (int turn = 0; stopped == 0; ++turn) {
+    constexpr int kTurnsPerStroke = 10;
+    if (strokes && turn % kTurnsPerStroke == 0) notify("WATCHDOG=1");
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   return 0;
 }
