@@ -2,14 +2,23 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
+#include <sstream>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/header.hpp"
+#include "services/common/runtime/config/read_text.hpp"
 
 namespace boresight::alignment {
 
 namespace {
+
+/// Two estimates before readers take the service for late.
+constexpr double kMaxPublishPeriod_s =
+    0.5e-9 * static_cast<double>(catalogue::topic(catalogue::TopicId::kAlignmentEstimate).deadline_ns);
 
 /// Standard deviations before any data. 0 switches a parameter off.
 void read_prior(config::Reader table, windows::Priors& p, FilterConfig& filter) {
@@ -132,7 +141,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   config::Reader convergence = table.table("convergence");
   c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
   c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
-  c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 1.0}, c.min_inlier_share);
+  c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 0.9}, c.min_inlier_share);
   c.inlier_memory_s = convergence.number("inlier_memory_s", {0.1, 600.0}, c.inlier_memory_s);
   c.max_noise_scale = convergence.number("max_noise_scale", {1.0, 3.4}, c.max_noise_scale);
 
@@ -205,13 +214,27 @@ std::optional<DriveTruth> read_truth(config::Reader& root) {
   const char* const from_environment = std::getenv("BORESIGHT_TRUTH");
   if (from_environment != nullptr) path = from_environment;
   if (path.empty()) return std::nullopt;
-  std::ifstream file(path);
-  DriveTruth truth = read_drive_truth(file);
-  if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
-  const std::string problem = "no truth of a simulated drive in " + path;
+  std::string problem = "no truth of a simulated drive in " + path;
+  try {
+    std::istringstream file(config::read_text(path));
+    DriveTruth truth = read_drive_truth(file);
+    if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
+  } catch (const config::Error& error) {
+    problem += fmt::format(" ({})", error.what());
+  }
   if (from_environment != nullptr) throw config::Error("$BORESIGHT_TRUTH: " + problem);
   root.reject("truth_file", problem);
   return std::nullopt;
+}
+
+/// A file of that name is replaced by a renamed one: it must not be a folder, pipe or device.
+void check_memory_path(config::Reader& table, const std::string& path) {
+  std::error_code ignored;
+  if (path.empty()) return;
+  if (!std::filesystem::path(path).has_filename() ||
+      (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))) {
+    table.reject("path", fmt::format("\"{}\" is no file; must be the path of a regular file, or \"\"", path));
+  }
 }
 
 }  // namespace
@@ -220,7 +243,7 @@ Settings read_settings(config::Reader root) {
   Settings settings;
   Config& c = settings.estimator;
   c.method = root.choice<MethodName>("method", {kMethodNames.begin(), kMethodNames.end()}, c.method);
-  c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
+  c.publish_period_s = root.number("publish_period_s", {0.05, kMaxPublishPeriod_s}, c.publish_period_s);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
   c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
   read_filter(root.table("filter"), c.filter, c.windows);
@@ -231,6 +254,7 @@ Settings read_settings(config::Reader root) {
   config::Reader memory_table = root.table("memory");
   memory.enabled = memory_table.boolean("enabled", memory.enabled);
   memory.path = memory_table.text("path", memory.path);
+  check_memory_path(memory_table, memory.path);
   memory.period_s = memory_table.number("period_s", {1.0, 3600.0}, memory.period_s);
   settings.station = station::read_settings(root.table("station"));
   root.finish();

@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "services/common/runtime/config/network_values.hpp"
+#include "services/common/runtime/config/vehicle_file.hpp"
+
 namespace boresight::health {
 
 namespace {
@@ -27,21 +30,22 @@ FileConfig read_config(config::Reader root) {
   Config& s = c.supervision;
   config::Reader supervision = root.table("supervision");
   s.window_s = supervision.number("window_s", {0.2, 60.0}, s.window_s);
-  s.min_rate_ratio = supervision.number("min_rate_ratio", {0.0, 1.0}, s.min_rate_ratio);
-  s.max_rejected_ratio = supervision.number("max_rejected_ratio", {0.0, 1.0}, s.max_rejected_ratio);
-  s.max_suspect_ratio = supervision.number("max_suspect_ratio", {0.0, 1.0}, s.max_suspect_ratio);
+  s.min_rate_ratio = supervision.number("min_rate_ratio", {0.1, 0.95}, s.min_rate_ratio);
+  s.max_rejected_ratio = supervision.number("max_rejected_ratio", {0.0, 0.9}, s.max_rejected_ratio);
+  s.max_suspect_ratio = supervision.number("max_suspect_ratio", {0.0, 0.9}, s.max_suspect_ratio);
   s.restart_memory_s = supervision.number("restart_memory_s", {0.0, 60.0}, s.restart_memory_s);
   config::Reader misalignment = root.table("misalignment");
-  s.confidence_sigma = misalignment.number("confidence_sigma", {0.0, 10.0}, s.confidence_sigma);
-  s.set_s = misalignment.number("set_s", {0.0, 600.0}, s.set_s);
+  s.confidence_sigma = misalignment.number("confidence_sigma", {1.0, 5.0}, s.confidence_sigma);
+  s.set_s = misalignment.number("set_s", {0.0, 60.0}, s.set_s);
   s.clear_s = misalignment.number("clear_s", {0.0, 600.0}, s.clear_s);
-  s.clear_ratio = misalignment.number("clear_ratio", {0.1, 1.0}, s.clear_ratio);
-  s.inhibit_rad = misalignment.angle_deg("inhibit_deg", {0.1, 90.0}, s.inhibit_rad);
+  s.clear_ratio = misalignment.number("clear_ratio", {0.1, 0.99}, s.clear_ratio);
+  s.inhibit_rad = misalignment.angle_deg("inhibit_deg", {config::kMaxTolerance_deg, 30.0}, s.inhibit_rad);
   s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
   config::Reader dds = root.table("dds");
   c.dds.enabled = dds.boolean("enabled", c.dds.enabled);
   c.dds.domain = static_cast<std::uint32_t>(dds.integer("domain", {0.0, kHighestDomain}, c.dds.domain));
   c.dds.interfaces = dds.texts("interfaces", c.dds.interfaces);
+  if (const auto problem = config::problem_of_ipv4_addresses(c.dds.interfaces)) dds.reject("interfaces", *problem);
   c.dds.period_s = dds.number("period_s", {0.1, 60.0}, c.dds.period_s);
   root.finish();
   c.dds.domain = domain_from_environment(c.dds.domain);

@@ -22,10 +22,10 @@ std::string failure(const char* what) {
   return std::string(what) + ": " + std::strerror(errno);
 }
 
-/// A file descriptor that the destructor closes.
+/// A file descriptor that the destructor closes. Opening does not wait for a pipe's other end.
 class Descriptor {
  public:
-  Descriptor(const fs::path& path, int flags) : fd_(open(path.c_str(), flags | O_CLOEXEC, 0660)) {}
+  Descriptor(const fs::path& path, int flags) : fd_(open(path.c_str(), flags | O_NONBLOCK | O_CLOEXEC, 0660)) {}
   ~Descriptor() {
     if (fd_ >= 0) close(fd_);
   }
