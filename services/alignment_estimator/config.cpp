@@ -74,8 +74,8 @@ void read_sums(config::Reader table, windows::SumsConfig& s) {
 
 void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   config::Reader radar = filter.table("step_change");
-  c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 30.0}, c.yaw_rad);
-  c.pitch_rad = radar.angle_deg("pitch_deg", {0.05, 30.0}, c.pitch_rad);
+  c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 10.0}, c.yaw_rad);
+  c.pitch_rad = radar.angle_deg("pitch_deg", {0.05, 10.0}, c.pitch_rad);
   c.scatter_factor = radar.number("scatter_factor", {1.0, 100.0}, c.scatter_factor);
   c.common_factor = radar.number("common_factor", {1.0, 100.0}, c.common_factor);
   c.yaw_scatter_rad = radar.angle_deg("yaw_scatter_deg", {0.001, 5.0}, c.yaw_scatter_rad);
@@ -94,7 +94,7 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
     common.after = static_cast<std::size_t>(table.integer("blocks", {4, 30}, static_cast<std::int64_t>(common.after)));
   };
   config::Reader load = filter.table("load_change");
-  c.load.least = load.angle_deg("least_deg", {0.01, 30.0}, c.load.least);
+  c.load.least = load.angle_deg("least_deg", {0.01, 10.0}, c.load.least);
   c.load.scatter = load.angle_deg("scatter_deg", {0.001, 5.0}, c.load.scatter);
   read_common(load, c.load);
   c.load.between_radars = load.angle_deg("between_radars_deg", {0.001, 5.0}, c.load.between_radars);
@@ -102,7 +102,7 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   c.load_wait_s = load.number("wait_s", {0.0, 3600.0}, c.load_wait_s);
   c.watch_s = load.number("watch_s", {1.0, 3600.0}, c.watch_s);
   config::Reader speed = filter.table("speed_change");
-  c.speed.least = speed.number("least", {1e-4, 1.0}, c.speed.least);
+  c.speed.least = speed.number("least", {1e-4, 0.2}, c.speed.least);
   c.speed.scatter = speed.number("scatter", {1e-5, 0.1}, c.speed.scatter);
   c.speed.between_radars = speed.number("between_radars", {1e-5, 0.1}, c.speed.between_radars);
   c.suspect_scale = speed.number("suspect", {1e-4, 1.0}, c.suspect_scale);
@@ -122,7 +122,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   w.priors.drift_std_radps =
       drift.angle_deg("std_deg_per_min", {0.0, 10.0}, w.priors.drift_std_radps * kPerMinute) / kPerMinute;
   w.priors.drift_span_s = drift.number("span_s", {10.0, 36000.0}, w.priors.drift_span_s);
-  w.change.drift_rad = drift.angle_deg("least_deg", {0.01, 30.0}, w.change.drift_rad);
+  w.change.drift_rad = drift.angle_deg("least_deg", {0.01, 10.0}, w.change.drift_rad);
   w.change.drift_stds = drift.number("stds", {1.0, 100.0}, w.change.drift_stds);
 
   config::Reader motion = table.table("motion");
@@ -203,8 +203,8 @@ PlausibilityConfig read_plausibility(config::Reader table) {
   c.window_s = table.number("window_s", {0.1, 5.0}, c.window_s);
   c.least_share = table.number("least_share", {0.05, 1.0}, c.least_share);
   c.yaw_limit_rad = table.angle_deg("yaw_limit_deg", {2.0, 45.0}, c.yaw_limit_rad);
-  c.prior_log_odds = table.number("prior_log_odds", {0.0, 100.0}, c.prior_log_odds);
-  c.margin_log = table.number("margin_log", {1.0, 100.0}, c.margin_log);
+  c.prior_log_odds = table.number("prior_log_odds", {0.0, 30.0}, c.prior_log_odds);
+  c.margin_log = table.number("margin_log", {1.0, 50.0}, c.margin_log);
   c.least_s = table.number("least_s", {0.5, 600.0}, c.least_s);
   return c;
 }
@@ -222,6 +222,7 @@ std::optional<DriveTruth> read_truth(config::Reader& root) {
   } catch (const config::Error& error) {
     problem += fmt::format(" ({})", error.what());
   }
+  problem += "; must be the truth.csv of a simulated drive, or \"\"";
   if (from_environment != nullptr) throw config::Error("$BORESIGHT_TRUTH: " + problem);
   root.reject("truth_file", problem);
   return std::nullopt;

@@ -32,8 +32,8 @@ Config read_config(config::Reader root) {
   c.rcs_near_dbsm = rcs.number("near_dbsm", {-100.0, 30.0}, c.rcs_near_dbsm);
   c.rcs_slope_db_per_decade = rcs.number("slope_db_per_decade", {-40.0, 40.0}, c.rcs_slope_db_per_decade);
   config::Reader moving = root.table("moving");
-  c.moving_sigma = moving.number("sigma", {0.5, 20.0}, c.moving_sigma);
-  c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 10.0}, c.body_motion_std_mps);
+  c.moving_sigma = moving.number("sigma", {1.0, 10.0}, c.moving_sigma);
+  c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 1.0}, c.body_motion_std_mps);
   c.azimuth_std_edge = moving.number("azimuth_std_edge", {0.01, 1.0}, c.azimuth_std_edge);
   config::Reader noise = root.table("stated_noise");
   StatedNoiseConfig& n = c.stated_noise;

@@ -33,9 +33,11 @@ void read_network(config::Reader& table, Settings& s) {
     table.reject("interface", "must be a network interface's name of 1 … 15 characters without blanks, '/' and ':'");
   }
   if (!s.enabled) return;
-  if (s.interface.empty()) table.reject("interface", "is required with enabled = true");
+  if (s.interface.empty())
+    table.reject("interface", "is empty; must be a network interface's name with enabled = true");
   if (s.address.is_unspecified() || s.address.is_multicast()) {
-    table.reject("address", "\"" + address + "\" is not an IP address of this machine");
+    table.reject("address",
+                 "\"" + address + "\" is no address of one host; must be a unicast IP address of this machine");
   } else if (!s.discovery_group.address.is_multicast() || s.discovery_group.address.is_v4() != s.address.is_v4()) {
     table.reject("discovery_group", "\"" + group + "\" is not a multicast group of the same IP version as address");
   }

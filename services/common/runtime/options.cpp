@@ -84,7 +84,7 @@ fs::path Configuration::vehicle_file() const {
   throw config::Error(fmt::format("no vehicle '{}' in {}{} --vehicle takes a file or one of the names there: {}",
                                   vehicle_name, places_of(folder, examples),
                                   near.empty() ? "." : fmt::format("; did you mean '{}'?", near.front()),
-                                  fmt::join(names, ", ")));
+                                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 VehicleConfig Configuration::vehicle(config::VehicleUse use) const {

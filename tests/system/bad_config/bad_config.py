@@ -21,8 +21,8 @@ TIME_LIMIT_S = 5
 MEMORY_LIMIT_BYTES = 4 << 30  # of addresses: an endless file must not be read to its end
 MAX_MESSAGE_BYTES = 20_000
 # The allowed values in a message.
-ALLOWED = re.compile(r"allowed|must |known here|already used|not valid TOML|is missing|is called|neither an IPv4|together|"
-                     r"is the port of service discovery|needs ")
+ALLOWED = re.compile(r"allowed: |must |known here: |already used|not valid TOML|is missing|neither an IPv4 nor an IPv6|"
+                     r"is the port of service discovery|this profile needs ")
 
 
 def environment():

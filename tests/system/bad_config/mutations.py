@@ -83,7 +83,7 @@ add(VEHICLE, ("ingest_gateway", "health"),
 add(VEHICLE, ("ingest_gateway",),
     ("yaw_deg = 45.0", "yaw_deg = nan", "radar[0].mounting_pose.yaw_deg: nan is out of range"),
     ("yaw_deg = 45.0", "yaw_deg = inf", "radar[0].mounting_pose.yaw_deg: inf is out of range"),
-    ("yaw_deg = 45.0", "yaw_deg = 1e400", "radar[0].mounting_pose.yaw_deg: inf is out of range"),
+    ("yaw_deg = 45.0", "yaw_deg = 1e400", "not valid TOML"),
     ("yaw_deg = 45.0", "yaw_deg = 180.0001", "radar[0].mounting_pose.yaw_deg: 180 is out of range"),
     ("yaw_deg = 45.0", 'yaw_deg = "45"', "radar[0].mounting_pose.yaw_deg: must be a number"),
     ("yaw_deg = 45.0", "yaw_deg = true", "radar[0].mounting_pose.yaw_deg: must be a number"),
@@ -231,12 +231,14 @@ add_values("object_classes", ("prior_share", "[1, 1, 1, 1, 1]", "prior_share"), 
 add_values("detection_corrector",
            ("min_m", "[300.0, -60.0, -2.0]", "region_of_interest.min_m"), ("min_m", "[nan, -60.0, -2.0]", "region_of_interest.min_m"),
            ("min_m", "[199.9, -60.0, -2.0]", "region_of_interest.min_m"), ("near_dbsm", "100.0", "rcs_threshold.near_dbsm"),
-           ("sigma", "0", "moving.sigma"), ("alignment_max_age_s", "0.0", "side_inputs.alignment_max_age_s"))
+           ("sigma", "0", "moving.sigma"), ("sigma", "20.0", "moving.sigma"),
+           ("body_motion_std_mps", "10.0", "moving.body_motion_std_mps"), ("alignment_max_age_s", "0.0", "side_inputs.alignment_max_age_s"))
 add_values("alignment_estimator",
            ("method", '"boresite"', "method"), ("publish_period_s", "0", "publish_period_s"),
            ("publish_period_s", "1e-9", "publish_period_s"), ("publish_period_s", "10.0", "publish_period_s"),
            ("truth_file", '"/nowhere.csv"', "truth_file"), ("truth_file", '"/dev/zero"', "truth_file"),
            ("path", '"/tmp"', "memory.path"), ("path", '"/dev/null"', "memory.path"),
+           ("prior_log_odds", "100.0", "plausibility.prior_log_odds"), ("margin_log", "100.0", "plausibility.margin_log"),
            ("min_inlier_share", "1.0", "filter.convergence.min_inlier_share"), ("passes", "1000000", "filter.start.passes"),
            ("interface", '"a/b"', "station.interface"), ("address", '"banana"', "station.address"),
            ("discovery_group", '"banana"', "station.discovery_group"))
@@ -255,5 +257,7 @@ add_text("two routes of one address", 'route[1].recorded: "224.0.2.2" must have 
          lambda text: text + 2 * b'\n[[route]]\nrecorded = "224.0.2.2"\nlocal = "127.0.0.1"\n', "services/replay.toml", ("replay",))
 add_text("fewer objects than a group has", "capacity.group_objects: must not exceed objects",
          replaced("\nobjects = 384", "\nobjects = 100"), "services/tracker.toml", ("tracker",))
-add_text("no interface for the station", "station.interface: is required",
+add_text("a step that is never reported", "filter.step_change.yaw_deg: 30 is out of range",
+         replaced("yaw_deg = 0.45 ", "yaw_deg = 30.0 "), "services/alignment_estimator.toml", ("alignment_estimator",), True)
+add_text("no interface for the station", "station.interface: is empty",
          lambda text: text.replace(b"\nenabled = false", b"\nenabled = true", 1), "services/alignment_estimator.toml", ("alignment_estimator",))

@@ -48,8 +48,9 @@ std::string read_mapping(Reader& reader, bool needed) {
   if (needed) reader.require("mapping");
   std::string mapping = reader.text("mapping", "");
   if (!needed && !mapping.empty()) reader.reject("mapping", "is for profile = \"mapping\" only");
-  if (needed && reader.has("mapping") && mapping.empty())
+  if (needed && mapping.empty() && reader.has("mapping")) {
     reader.reject("mapping", "must be the path of a mapping file");
+  }
   return mapping;
 }
 
