@@ -38,6 +38,9 @@ int use_vehicle(const runtime::Configuration& configuration) {
   std::error_code error;
   if (!fs::exists(place, error)) {
     terminal::write_file(place, text);
+    // Each service has its own user, whatever the umask of this one is.
+    using fs::perms;
+    fs::permissions(place, perms::owner_read | perms::owner_write | perms::group_read | perms::others_read, error);
   } else if (config::read_text(place) != text) {
     throw UsageError(fmt::format("{} differs from {}; remove it, or give the new file another name", place.string(),
                                  source.string()));

@@ -16,6 +16,8 @@ TMP = pathlib.Path("/tmp/command_line")
 DRIVE = TMP / "drive"
 TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
+# Others may publish on the usual domain of this network.
+os.environ["BORESIGHT_DDS_DOMAIN"] = str(100 + os.getpid() % 100)
 
 COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "fit-evidence", "gospa",
             "monitor", "record", "report", "run", "score", "simulate", "supervise", "track", "vehicle list", "vehicle use")
@@ -223,7 +225,10 @@ def check_vehicle():
     expect_service(2, "mine/vehicle: holds no vehicle; choose one by 'boresight vehicle use NAME|FILE'")
     expect(f"vehicle use {source}/vehicle/demo.toml --config MINE", 0, "vehicle demo: MINE/vehicle/demo.toml, 4 radars")
     expect_service(0, "valid")
+    os.umask(0o077)
     expect(f"vehicle use {source}/vehicle/example_mixed.toml --config MINE", 0, "7 radars")
+    os.umask(0o022)
+    check("other users can read a chosen vehicle", (TMP / "mine/vehicle/example_mixed.toml").stat().st_mode & 0o777 == 0o644)
     done = expect("vehicle list --config MINE", 0)
     stars = [line for line in done.stdout.splitlines() if line.startswith("*")]
     check("vehicle list marks the chosen one only", len(stars) == 2 and stars[0].startswith("* example_mixed "), done.stdout)
