@@ -2,14 +2,23 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
+#include <sstream>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/header.hpp"
+#include "services/common/runtime/config/read_text.hpp"
 
 namespace boresight::alignment {
 
 namespace {
+
+/// Two estimates before readers take the service for late.
+constexpr double kMaxPublishPeriod_s =
+    0.5e-9 * static_cast<double>(catalogue::topic(catalogue::TopicId::kAlignmentEstimate).deadline_ns);
 
 /// Standard deviations before any data. 0 switches a parameter off.
 void read_prior(config::Reader table, windows::Priors& p, FilterConfig& filter) {
@@ -65,8 +74,8 @@ void read_sums(config::Reader table, windows::SumsConfig& s) {
 
 void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   config::Reader radar = filter.table("step_change");
-  c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 30.0}, c.yaw_rad);
-  c.pitch_rad = radar.angle_deg("pitch_deg", {0.05, 30.0}, c.pitch_rad);
+  c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 10.0}, c.yaw_rad);
+  c.pitch_rad = radar.angle_deg("pitch_deg", {0.05, 10.0}, c.pitch_rad);
   c.scatter_factor = radar.number("scatter_factor", {1.0, 100.0}, c.scatter_factor);
   c.common_factor = radar.number("common_factor", {1.0, 100.0}, c.common_factor);
   c.yaw_scatter_rad = radar.angle_deg("yaw_scatter_deg", {0.001, 5.0}, c.yaw_scatter_rad);
@@ -85,7 +94,7 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
     common.after = static_cast<std::size_t>(table.integer("blocks", {4, 30}, static_cast<std::int64_t>(common.after)));
   };
   config::Reader load = filter.table("load_change");
-  c.load.least = load.angle_deg("least_deg", {0.01, 30.0}, c.load.least);
+  c.load.least = load.angle_deg("least_deg", {0.01, 10.0}, c.load.least);
   c.load.scatter = load.angle_deg("scatter_deg", {0.001, 5.0}, c.load.scatter);
   read_common(load, c.load);
   c.load.between_radars = load.angle_deg("between_radars_deg", {0.001, 5.0}, c.load.between_radars);
@@ -93,7 +102,7 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   c.load_wait_s = load.number("wait_s", {0.0, 3600.0}, c.load_wait_s);
   c.watch_s = load.number("watch_s", {1.0, 3600.0}, c.watch_s);
   config::Reader speed = filter.table("speed_change");
-  c.speed.least = speed.number("least", {1e-4, 1.0}, c.speed.least);
+  c.speed.least = speed.number("least", {1e-4, 0.2}, c.speed.least);
   c.speed.scatter = speed.number("scatter", {1e-5, 0.1}, c.speed.scatter);
   c.speed.between_radars = speed.number("between_radars", {1e-5, 0.1}, c.speed.between_radars);
   c.suspect_scale = speed.number("suspect", {1e-4, 1.0}, c.suspect_scale);
@@ -113,7 +122,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   w.priors.drift_std_radps =
       drift.angle_deg("std_deg_per_min", {0.0, 10.0}, w.priors.drift_std_radps * kPerMinute) / kPerMinute;
   w.priors.drift_span_s = drift.number("span_s", {10.0, 36000.0}, w.priors.drift_span_s);
-  w.change.drift_rad = drift.angle_deg("least_deg", {0.01, 30.0}, w.change.drift_rad);
+  w.change.drift_rad = drift.angle_deg("least_deg", {0.01, 10.0}, w.change.drift_rad);
   w.change.drift_stds = drift.number("stds", {1.0, 100.0}, w.change.drift_stds);
 
   config::Reader motion = table.table("motion");
@@ -132,7 +141,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   config::Reader convergence = table.table("convergence");
   c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
   c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
-  c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 1.0}, c.min_inlier_share);
+  c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 0.9}, c.min_inlier_share);
   c.inlier_memory_s = convergence.number("inlier_memory_s", {0.1, 600.0}, c.inlier_memory_s);
   c.max_noise_scale = convergence.number("max_noise_scale", {1.0, 3.4}, c.max_noise_scale);
 
@@ -194,8 +203,8 @@ PlausibilityConfig read_plausibility(config::Reader table) {
   c.window_s = table.number("window_s", {0.1, 5.0}, c.window_s);
   c.least_share = table.number("least_share", {0.05, 1.0}, c.least_share);
   c.yaw_limit_rad = table.angle_deg("yaw_limit_deg", {2.0, 45.0}, c.yaw_limit_rad);
-  c.prior_log_odds = table.number("prior_log_odds", {0.0, 100.0}, c.prior_log_odds);
-  c.margin_log = table.number("margin_log", {1.0, 100.0}, c.margin_log);
+  c.prior_log_odds = table.number("prior_log_odds", {0.0, 30.0}, c.prior_log_odds);
+  c.margin_log = table.number("margin_log", {1.0, 50.0}, c.margin_log);
   c.least_s = table.number("least_s", {0.5, 600.0}, c.least_s);
   return c;
 }
@@ -205,13 +214,28 @@ std::optional<DriveTruth> read_truth(config::Reader& root) {
   const char* const from_environment = std::getenv("BORESIGHT_TRUTH");
   if (from_environment != nullptr) path = from_environment;
   if (path.empty()) return std::nullopt;
-  std::ifstream file(path);
-  DriveTruth truth = read_drive_truth(file);
-  if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
-  const std::string problem = "no truth of a simulated drive in " + path;
+  std::string problem = "no truth of a simulated drive in " + path;
+  try {
+    std::istringstream file(config::read_text(path));
+    DriveTruth truth = read_drive_truth(file);
+    if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
+  } catch (const config::Error& error) {
+    problem += fmt::format(" ({})", error.what());
+  }
+  problem += "; must be the truth.csv of a simulated drive, or \"\"";
   if (from_environment != nullptr) throw config::Error("$BORESIGHT_TRUTH: " + problem);
   root.reject("truth_file", problem);
   return std::nullopt;
+}
+
+/// A file of that name is replaced by a renamed one: it must not be a folder, pipe or device.
+void check_memory_path(config::Reader& table, const std::string& path) {
+  std::error_code ignored;
+  if (path.empty()) return;
+  if (!std::filesystem::path(path).has_filename() ||
+      (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))) {
+    table.reject("path", fmt::format("\"{}\" is no file; must be the path of a regular file, or \"\"", path));
+  }
 }
 
 }  // namespace
@@ -220,7 +244,7 @@ Settings read_settings(config::Reader root) {
   Settings settings;
   Config& c = settings.estimator;
   c.method = root.choice<MethodName>("method", {kMethodNames.begin(), kMethodNames.end()}, c.method);
-  c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
+  c.publish_period_s = root.number("publish_period_s", {0.05, kMaxPublishPeriod_s}, c.publish_period_s);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
   c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
   read_filter(root.table("filter"), c.filter, c.windows);
@@ -231,6 +255,7 @@ Settings read_settings(config::Reader root) {
   config::Reader memory_table = root.table("memory");
   memory.enabled = memory_table.boolean("enabled", memory.enabled);
   memory.path = memory_table.text("path", memory.path);
+  check_memory_path(memory_table, memory.path);
   memory.period_s = memory_table.number("period_s", {1.0, 3600.0}, memory.period_s);
   settings.station = station::read_settings(root.table("station"));
   root.finish();

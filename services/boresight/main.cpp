@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   boresight::add_simulate_command(app, exit_code);
   boresight::add_supervise_command(app, exit_code);
   boresight::add_track_command(app, exit_code);
+  boresight::add_vehicle_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace boresight::corrector {
 
 namespace {
+
+/// Smallest side of the region of interest: in a smaller one no object has room.
+constexpr double kMinRegionSide_m = 1.0;
 
 void read_corner(config::Reader& reader, std::string_view key, std::array<double, 3>& corner) {
   const auto values = reader.numbers(key, 3, {-1000.0, 1000.0}, {corner.begin(), corner.end()});
@@ -19,14 +24,16 @@ Config read_config(config::Reader root) {
   read_corner(region, "min_m", c.region_min_m);
   read_corner(region, "max_m", c.region_max_m);
   for (std::size_t i = 0; i < 3; ++i) {
-    if (c.region_min_m[i] >= c.region_max_m[i]) region.reject("min_m", "must be below max_m in every element");
+    if (c.region_max_m[i] - c.region_min_m[i] >= kMinRegionSide_m) continue;
+    region.reject("min_m", fmt::format("must be below max_m by at least {} m in every element", kMinRegionSide_m));
+    break;
   }
   config::Reader rcs = root.table("rcs_threshold");
-  c.rcs_near_dbsm = rcs.number("near_dbsm", {-100.0, 100.0}, c.rcs_near_dbsm);
-  c.rcs_slope_db_per_decade = rcs.number("slope_db_per_decade", {-100.0, 100.0}, c.rcs_slope_db_per_decade);
+  c.rcs_near_dbsm = rcs.number("near_dbsm", {-100.0, 30.0}, c.rcs_near_dbsm);
+  c.rcs_slope_db_per_decade = rcs.number("slope_db_per_decade", {-40.0, 40.0}, c.rcs_slope_db_per_decade);
   config::Reader moving = root.table("moving");
-  c.moving_sigma = moving.number("sigma", {0.5, 20.0}, c.moving_sigma);
-  c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 10.0}, c.body_motion_std_mps);
+  c.moving_sigma = moving.number("sigma", {1.0, 10.0}, c.moving_sigma);
+  c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 1.0}, c.body_motion_std_mps);
   c.azimuth_std_edge = moving.number("azimuth_std_edge", {0.01, 1.0}, c.azimuth_std_edge);
   config::Reader noise = root.table("stated_noise");
   StatedNoiseConfig& n = c.stated_noise;

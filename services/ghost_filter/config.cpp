@@ -116,6 +116,9 @@ IntensityConfig read_intensity(config::Reader reader) {
   c.most_mirror_share = reader.number("most_mirror_share", {0.0, 1.0}, c.most_mirror_share);
   c.least_mirror_share = reader.number("least_mirror_share", {0.0, 1.0}, c.least_mirror_share);
   c.mirror_scatter_m = reader.number("mirror_scatter_m", {0.001, 5.0}, c.mirror_scatter_m);
+  if (c.least_mirror_share > c.most_mirror_share) {
+    reader.reject("least_mirror_share", "must not exceed most_mirror_share");
+  }
   return c;
 }
 

@@ -131,7 +131,7 @@ std::uint64_t configuration_fingerprint(const runtime::Configuration& files) {
   std::vector<fs::path> services;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(files.directory / "services", ignored)) {
-    services.push_back(entry.path());
+    if (entry.is_regular_file(ignored)) services.push_back(entry.path());
   }
   std::sort(services.begin(), services.end());
   for (const fs::path& file : services) print.add(std::string_view(content_of(file)));

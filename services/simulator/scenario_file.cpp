@@ -40,7 +40,8 @@ Scenario read_scenario(config::Reader root) {
   s.vehicle = root.text("vehicle", "");
   s.duration_s = root.number("duration_s", {0.1, 36000.0}, s.duration_s);
   s.road = read_road(root.table("road"));
-  s.ego = read_ego(root.table("ego"));
+  config::Reader ego = root.table("ego");
+  s.ego = read_ego(ego);
   for (config::Reader& r : root.tables("structure")) s.structures.push_back(read_structure(r));
   for (config::Reader& r : root.tables("scatter")) s.scatter.push_back(read_scatter(r));
   for (config::Reader& r : root.tables("body")) read_body(r, s.bodies);
@@ -48,7 +49,7 @@ Scenario read_scenario(config::Reader root) {
   double length_m = 0.0;
   for (const RoadSegment& segment : s.road.segments) length_m += segment.length_m;
   if (passes_the_centre(s.road, s.ego.lateral_m, s.ego.start_m, s.ego.start_m + length_m)) {
-    root.table("ego").reject("", "drives beyond the centre of a bend: its lateral offset is too large for the road");
+    ego.reject("", "drives beyond the centre of a bend: its lateral offset is too large for the road");
   }
   root.finish();
   return s;

@@ -180,6 +180,8 @@ void read_capacity(config::Reader table, pmbm::Capacity& c) {
   capacity("group_measurements", {16, 1024}, c.group_measurements);
   capacity("rows", {1, 64}, c.rows);
   capacity("candidates", {1, 256}, c.candidates);
+  if (c.group_objects > c.objects) table.reject("group_objects", "must not exceed objects");
+  if (c.group_measurements > c.measurements) table.reject("group_measurements", "must not exceed measurements");
 }
 
 }  // namespace
@@ -214,13 +216,17 @@ Config read_config(config::Reader root) {
                            {"least_doubt", &x.least_doubt, {1e-9, 0.5}},
                            {"least_probability", &x.least_probability, {1e-6, 0.1}}});
   ReportParameters& r = c.report;
-  read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
-                              {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
-                              {"least_existence", &r.least_existence, {0.001, 0.5}},
-                              {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}},
-                              {"flag_probability", &r.flags.likely, {0.01, 0.99}},
-                              {"merged_share", &r.flags.merged_share, {0.01, 1.0}},
-                              {"recent_scan_s", &r.flags.recent_scan_s, {0.01, 10.0}}});
+  config::Reader report = root.table("report");
+  read(report, {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
+                {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
+                {"least_existence", &r.least_existence, {0.001, 0.5}},
+                {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}},
+                {"flag_probability", &r.flags.likely, {0.01, 0.99}},
+                {"merged_share", &r.flags.merged_share, {0.01, 1.0}},
+                {"recent_scan_s", &r.flags.recent_scan_s, {0.01, 10.0}}});
+  if (r.confirmed_existence <= r.least_existence) {
+    report.reject("confirmed_existence", "must be greater than least_existence");
+  }
   root.finish();
   return c;
 }

@@ -1,6 +1,12 @@
 #include "services/alignment_estimator/station/settings.hpp"
 
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "interfaces/wire/boresight_service.hpp"
+#include "services/common/runtime/config/network_values.hpp"
 
 namespace boresight::alignment::station {
 
@@ -18,10 +24,20 @@ void read_network(config::Reader& table, Settings& s) {
   s.discovery_group.address = recording::ip_or_unspecified(group);
   s.discovery_group.port = static_cast<std::uint16_t>(table.integer("discovery_port", {1, 65535}, discovery::kPort));
   s.multicast_hops = static_cast<int>(table.integer("multicast_hops", {0, 255}, s.multicast_hops));
+  for (const auto& [key, text] : {std::pair("address", address), std::pair("discovery_group", group)}) {
+    if (!text.empty() && !recording::parse_ip(text)) {
+      table.reject(key, fmt::format("\"{}\" is neither an IPv4 nor an IPv6 address", text));
+    }
+  }
+  if (!s.interface.empty() && !config::is_interface_name(s.interface)) {
+    table.reject("interface", "must be a network interface's name of 1 … 15 characters without blanks, '/' and ':'");
+  }
   if (!s.enabled) return;
-  if (s.interface.empty()) table.reject("interface", "is required with enabled = true");
+  if (s.interface.empty())
+    table.reject("interface", "is empty; must be a network interface's name with enabled = true");
   if (s.address.is_unspecified() || s.address.is_multicast()) {
-    table.reject("address", "\"" + address + "\" is not an IP address of this machine");
+    table.reject("address",
+                 "\"" + address + "\" is no address of one host; must be a unicast IP address of this machine");
   } else if (!s.discovery_group.address.is_multicast() || s.discovery_group.address.is_v4() != s.address.is_v4()) {
     table.reject("discovery_group", "\"" + group + "\" is not a multicast group of the same IP version as address");
   }

@@ -24,5 +24,6 @@ void add_score_command(CLI::App& app, int& exit_code);
 void add_simulate_command(CLI::App& app, int& exit_code);
 void add_supervise_command(CLI::App& app, int& exit_code);
 void add_track_command(CLI::App& app, int& exit_code);
+void add_vehicle_command(CLI::App& app, int& exit_code);
 
 }  // namespace boresight

@@ -1,8 +1,6 @@
 // `boresight fit-evidence`: weights of the ghost filter's evidence from labelled drives of a radar.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +18,7 @@
 #include "services/boresight/run/settings.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
+#include "services/common/runtime/config/read_text.hpp"
 #include "services/ghost_filter/weights_file.hpp"
 
 namespace boresight {
@@ -143,9 +142,7 @@ class FitEvidence {
     bar_.wipe();
     const std::string table = fit_evidence::weights_text(fit.weights, fit_evidence::origin_of(fit, fitted_));
     if (out_) {
-      std::ifstream stream(profile_);
-      const std::string profile{std::istreambuf_iterator<char>(stream), {}};
-      out_->write(fit_evidence::with_weights(profile, table, profile_.string()));
+      out_->write(fit_evidence::with_weights(config::read_text(profile_), table, profile_.string()));
       out_->commit();
     } else {
       if (!json_) std::fprintf(stderr, "%s", fit_evidence::to_text(fit, fitted_).c_str());

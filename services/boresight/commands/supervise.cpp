@@ -54,7 +54,7 @@ void print_if_possible(const std::string& line) {
 int run_supervise(SuperviseOptions options) {
   static_cast<void>(options.configuration.vehicle());  // a wrong configuration is reported before anything starts
   options.domain.config_directory = options.configuration.directory;
-  options.domain.vehicle = options.configuration.vehicle_name;
+  options.domain.vehicle = std::filesystem::absolute(options.configuration.vehicle_file()).string();
   if (options.domain.binaries.empty()) options.domain.binaries = supervisor::binaries_folder();
   if (options.domain.run_directory.empty()) options.domain.run_directory = supervisor::unused_run_directory();
   if (options.replay) options.domain.environment.emplace_back("BORESIGHT_INPUT", "replay");

@@ -1,6 +1,5 @@
 #include "services/common/runtime/options.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <vector>
 
@@ -31,17 +30,9 @@ fs::path source_of(std::ifstream& cache) {
   return {};
 }
 
-/// Sorted names of the vehicle files in `folder`.
-std::vector<std::string> vehicle_names(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  }
-  if (error) throw config::Error(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
-  if (names.empty()) throw config::Error(fmt::format("{}: holds no vehicle (*.toml)", folder.string()));
-  std::sort(names.begin(), names.end());
-  return names;
+/// "in FOLDER", and in the examples' folder if there is one.
+std::string places_of(const fs::path& folder, const fs::path& examples) {
+  return examples.empty() ? folder.string() : fmt::format("{} and {}", folder.string(), examples.string());
 }
 
 }  // namespace
@@ -73,23 +64,27 @@ fs::path Configuration::radar_profile_file(const std::string& name) const {
 }
 
 fs::path Configuration::vehicle_file() const {
+  if (vehicle_name.empty()) return chosen_vehicle_file(directory);
   const fs::path folder = directory / "vehicle";
-  if (vehicle_name.empty()) {
-    const std::vector<std::string> names = vehicle_names(folder);
-    if (names.size() == 1) return folder / (names.front() + ".toml");
-    throw config::Error(fmt::format("{}: holds several vehicles; name one by --vehicle or $BORESIGHT_VEHICLE: {}",
-                                    folder.string(), fmt::join(names, ", ")));
-  }
   std::error_code ignored;
   const bool is_path = vehicle_name.find('/') != std::string::npos;
-  if (!is_path && fs::exists(folder / (vehicle_name + ".toml"), ignored)) return folder / (vehicle_name + ".toml");
-  if (fs::is_regular_file(vehicle_name, ignored)) return vehicle_name;
+  for (const fs::path& place : {folder, examples}) {
+    const fs::path file = place / (vehicle_name + ".toml");
+    if (!is_path && !place.empty() && fs::exists(fs::symlink_status(file, ignored))) return file;
+  }
+  // A path may also name a pipe or a folder: the reader says so.
+  if (is_path ? fs::exists(vehicle_name, ignored) : fs::is_regular_file(vehicle_name, ignored)) return vehicle_name;
   if (is_path) throw config::Error(fmt::format("--vehicle {}: no such file", vehicle_name));
-  const std::vector<std::string> names = vehicle_names(folder);
+  std::vector<std::string> names = vehicle_names(folder);
+  if (!examples.empty()) {
+    const std::vector<std::string> more = vehicle_names(examples);
+    names.insert(names.end(), more.begin(), more.end());
+  }
   const std::vector<std::string> near = near_names(vehicle_name, names);
-  throw config::Error(fmt::format(
-      "no vehicle '{}' in {}{} --vehicle takes a file or one of the names there: {}", vehicle_name, folder.string(),
-      near.empty() ? "." : fmt::format("; did you mean '{}'?", near.front()), fmt::join(names, ", ")));
+  throw config::Error(fmt::format("no vehicle '{}' in {}{} --vehicle takes a file or one of the names there: {}",
+                                  vehicle_name, places_of(folder, examples),
+                                  near.empty() ? "." : fmt::format("; did you mean '{}'?", near.front()),
+                                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 VehicleConfig Configuration::vehicle(config::VehicleUse use) const {

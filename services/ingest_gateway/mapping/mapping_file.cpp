@@ -1,7 +1,6 @@
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 
-#include <fstream>
-#include <sstream>
+#include "services/common/runtime/config/read_text.hpp"
 
 namespace boresight::ingest {
 
@@ -11,17 +10,8 @@ namespace fs = std::filesystem;
 
 /// The database beside a mapping file: `name` is absolute or relative to the mapping file's folder.
 dbc::Database load_beside(const fs::path& mapping_file, const std::string& name) {
-  constexpr std::uintmax_t kMostBytes = 64u << 20;
   const fs::path file = mapping_file.parent_path() / name;
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);  // also fails for folders
-  if (error) throw config::Error(file.string() + " cannot be read: " + error.message());
-  if (size > kMostBytes) throw config::Error(file.string() + " is larger than 64 MB");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw config::Error(file.string() + " cannot be read");
-  return dbc::parse_dbc(text.str(), file.string());
+  return dbc::parse_dbc(config::read_text(file, config::kMaxDatabaseBytes), file.string());
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ void Story::SetUpTestSuite() {
   for (int id = 1; id <= 2; ++id) {
     vehicle << "[[radar]]\nid = " << id << "\nname = \"radar " << id << "\"\nprofile = \"ars408\"\nsensor_id = " << id
             << "\nsource = {link = \"can\", interface = \"can1\"}\n"
-            << "mounting_pose = {position_m = [3.7, 0.0, 0.5], yaw_deg = 0.0}\n";
+            << "mounting_pose = {position_m = [3.7, 0." << id << ", 0.5], yaw_deg = 0.0}\n";
   }
   vehicle.close();
   shared_ = std::make_unique<Shared>();

@@ -4,6 +4,7 @@ Runs in a /tmp of its own. Exit code 0 if every check passed, 1 if one failed.""
 import os
 import pathlib
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -15,9 +16,12 @@ TMP = pathlib.Path("/tmp/command_line")
 DRIVE = TMP / "drive"
 TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
+# Others may publish on the usual domain of this network.
+os.environ["BORESIGHT_DDS_DOMAIN"] = str(100 + os.getpid() % 100)
 
-COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "dtc clear", "dtc list", "dtc show", "dtc table", "fit-evidence", "gospa",
-            "monitor", "record", "report", "run", "score", "simulate", "supervise", "track")
+COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "dtc clear", "dtc list",
+            "dtc show", "dtc table", "fit-evidence", "gospa", "monitor", "record", "report", "run", "score", "simulate", "supervise", "track",
+            "vehicle list", "vehicle use")
 # Commands whose input is not there: exit code 3, and the message names the input.
 MISSING_INPUT = (
     "align --recording ABSENT --vehicle demo",
@@ -77,6 +81,13 @@ USAGE = (
     ("supervise --vehicle absent", "names there: alignment_drive, "),
     ("track --measurements x --params y --out z --tracker absent", "--tracker"),
     ("catalogue --roudi --markdown", "--markdown"),
+    ("vehicle", "a command is missing"),
+    ("vehicle use", "vehicle is required"),
+    ("vehicle use absent", "names there: alignment_drive, "),
+    ("vehicle use alignment_drive", "ego.source: is missing"),
+    ("vehicle list --config /absent", "/absent/vehicle: holds no vehicle"),
+    ("demo --vehicle PIPE", "it is a pipe; must be a regular file"),
+    ("simulate --scenario PIPE --out OUT", "it is a pipe; must be a regular file"),
 )
 # An output without room: exit code 3, and the message names the file and the cause.
 NO_ROOM = (
@@ -115,7 +126,7 @@ def check(what, is_true, detail=""):
 def paths(text):
     for name, path in (("ABSENT", TMP / "absent.pcap"), ("TABLES", TABLES), ("DRIVE", DRIVE), ("FULL", FULL),
                        ("RECORD", TMP / "record.txt"), ("LIVE", TMP / "live"), ("PLATE", TMP / "plate.csv"), ("OUT", TMP / "unused"),
-                       ("REFLECTORS", TMP / "reflectors.csv")):
+                       ("REFLECTORS", TMP / "reflectors.csv"), ("PIPE", TMP / "pipe"), ("MINE", TMP / "mine")):
         text = re.sub(rf"\b{name}\b", str(path), text)
     return text
 
@@ -141,6 +152,7 @@ def prepare():
     (TMP / "reflectors.csv").write_text("x_m,y_m,z_m,range_m,azimuth_deg\n" + "".join(
         f"{10 + 3 * i},8,0.6,{10 + 3 * i},{10 - 0.1 * i}\n" for i in range(12)))
     (TMP / "record.txt").write_text("")
+    os.mkfifo(TMP / "pipe")
     (TMP / "live").mkdir()
     (TMP / "live/monitor.jsonl").write_text("")
     expect(f"simulate --duration 3 --out {DRIVE}", 0, "simulated 3.0 s", f"{DRIVE}/truth.csv")
@@ -201,6 +213,45 @@ def check_findings():
     expect("report LIVE --vehicle demo --out page.html", 1)
     expect("diagnostics --seconds 0.2", 1, "nothing was received")
     expect("demo --config /absent --config /also_absent", 2, "configuration: /also_absent")
+
+
+def check_vehicle():
+    source = pathlib.Path(sys.argv[2], "config")
+    for folder in ("services", "mappings", "radar_profiles"):
+        shutil.copytree(source / folder, TMP / "mine" / folder)
+    (TMP / "mine/vehicle").mkdir()
+    gateway = [pathlib.Path(BORESIGHT).parent / "boresight-ingest_gateway", "--config", TMP / "mine", "--check"]
+
+    def expect_service(exit_code, text):
+        done = subprocess.run(gateway, capture_output=True, text=True, timeout=10, env={"PATH": os.environ["PATH"]})
+        said = done.stdout + done.stderr
+        check(f"gateway: exit code {exit_code}, '{text}'", done.returncode == exit_code and text in said, said)
+
+    expect_service(2, "mine/vehicle: holds no vehicle; choose one by 'boresight vehicle use NAME|FILE'")
+    expect(f"vehicle use {source}/vehicle/demo.toml --config MINE", 0, "vehicle demo: MINE/vehicle/demo.toml, 4 radars")
+    expect_service(0, "valid")
+    os.umask(0o077)
+    expect(f"vehicle use {source}/vehicle/example_mixed.toml --config MINE", 0, "7 radars")
+    os.umask(0o022)
+    check("other users can read a chosen vehicle", (TMP / "mine/vehicle/example_mixed.toml").stat().st_mode & 0o777 == 0o644)
+    done = expect("vehicle list --config MINE", 0)
+    stars = [line for line in done.stdout.splitlines() if line.startswith("*")]
+    check("vehicle list marks the chosen one only", len(stars) == 2 and stars[0].startswith("* example_mixed "), done.stdout)
+    # Whatever is refused, the choice stays.
+    for file, problem in (("alignment_drive.toml", "ego.source: is missing"), ("absent.toml", "no such file")):
+        expect(f"vehicle use {source}/vehicle/{file} --config MINE", 2, problem)
+    (TMP / "other").mkdir()
+    (TMP / "other/demo.toml").write_text((source / "vehicle/demo.toml").read_text() + "# changed\n")
+    expect(f"vehicle use {TMP}/other/demo.toml --config MINE", 2, "differs from")
+    check("a refused file is not copied", sorted(p.name for p in (TMP / "mine/vehicle").iterdir()) == ["demo.toml", "example_mixed.toml"])
+    check("a refused file is not chosen", os.readlink(TMP / "mine/vehicle.toml") == "vehicle/example_mixed.toml")
+    expect("vehicle use demo --config MINE", 0, "vehicle demo")
+    (TMP / "mine/vehicle/demo.toml").unlink()
+    expect_service(2, "mine/vehicle/demo.toml does not exist; choose one by")
+    (TMP / "mine/vehicle.toml").unlink()
+    expect_service(0, "valid")
+    shutil.copy(source / "vehicle/demo.toml", TMP / "mine/vehicle")
+    expect_service(2, "holds several vehicles, and none is chosen; choose one by")
 
 
 def interrupt(arguments, after_s=0.5, number=signal.SIGINT, exit_code=130, feed=None, ready=None):
@@ -286,7 +337,7 @@ def check_record():
 
 
 prepare()
-for step in (check_help, check_errors, check_findings, check_interrupts, check_record):
+for step in (check_help, check_errors, check_findings, check_vehicle, check_interrupts, check_record):
     begin = time.monotonic()
     step()
     print(f"{step.__name__}: {time.monotonic() - begin:.1f} s")

@@ -36,6 +36,16 @@ nothing_left() { [ -z "$(ls /dev/shm)" ] && ! pgrep -f '^/usr/lib/boresight/|iox
 ip link set lo up multicast on
 ip route add 224.0.0.0/4 dev lo
 
+# refuses TEXT: a service finds no vehicle, ends with exit code 2 and says what to do.
+refuses() {
+  local said
+  said=$(/usr/lib/boresight/boresight-ingest_gateway --check 2>&1)
+  [ $? -eq 2 ] && [[ $said == *"$1"* ]]
+}
+check "no vehicle is chosen by the installation" refuses "choose one by 'boresight vehicle use"
+check "an example is chosen by its name" boresight vehicle use demo
+check "a vehicle that no service can use is refused" sh -c '! boresight vehicle use alignment_drive 2>/dev/null'
+
 systemctl start boresight.target
 check "every unit becomes active" within 15 all_active
 for service in roudi "${services[@]}"; do

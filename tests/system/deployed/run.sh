@@ -37,7 +37,6 @@ DESTDIR=$root cmake --install "$build" --prefix /usr > "$work/out/install.txt"
   --out "$root/var/lib/boresight-drive" > "$work/out/simulate.txt"
 recordings=$(find "$root/var/lib/boresight-drive" \( -name '*.log' -o -name '*.pcap' \) -printf '/var/lib/boresight-drive/%f ')
 cat > "$root/etc/default/boresight" <<EOF
-BORESIGHT_VEHICLE=demo
 BORESIGHT_INPUT=replay
 BORESIGHT_REPLAY_ARGS=$recordings
 EOF

@@ -76,8 +76,8 @@ void Story::write_vehicle(const std::string& address, const std::string& discove
   content += "[ego]\nprofile = \"boresight\"\n" + source(1);
   for (int id = 1; id <= 2; ++id) {
     content += "[[radar]]\nid = " + std::to_string(id) + "\nname = \"radar " + std::to_string(id) +
-               "\"\nprofile = \"boresight\"\n" + source(id) +
-               "mounting_pose = {position_m = [3.0, 0.0, 0.5], yaw_deg = 0.0}\n";
+               "\"\nprofile = \"boresight\"\n" + source(id) + "mounting_pose = {position_m = [3.0, 0." +
+               std::to_string(id) + ", 0.5], yaw_deg = 0.0}\n";
   }
   write_vehicle_file(content);
 }

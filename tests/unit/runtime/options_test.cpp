@@ -111,7 +111,45 @@ TEST_F(OptionsTest, UnknownVehicleIsReportedWithTheKnownNamesAndTheFolder) {
   EXPECT_THAT(error_of("truk"), HasSubstr("did you mean 'truck'?"));
   EXPECT_THAT(error_of("truk"), HasSubstr("names there: car, truck"));
   EXPECT_EQ(error_of("./absent.toml"), "--vehicle ./absent.toml: no such file");
-  EXPECT_THAT(error_of(""), HasSubstr("several vehicles"));
+}
+
+TEST_F(OptionsTest, WithoutANameTheChosenVehicleIsTaken) {
+  EXPECT_THAT(error_of(""), HasSubstr("source/config/vehicle: holds no vehicle; choose one by 'boresight vehicle use"));
+  make_vehicle("car");
+  make_vehicle("truck");
+  EXPECT_THAT(error_of(""), HasSubstr("several vehicles, and none is chosen; choose one by 'boresight vehicle use"));
+  EXPECT_THAT(error_of(""), HasSubstr(": car, truck"));
+  choose_vehicle(folder_ / "source/config", "truck");
+  EXPECT_EQ(configuration("").vehicle_file(), folder_ / "source/config/vehicle/truck.toml");
+  choose_vehicle(folder_ / "source/config", "car");
+  EXPECT_EQ(configuration("").vehicle_file(), folder_ / "source/config/vehicle/car.toml");
+  EXPECT_EQ(configuration("truck").vehicle_file(), folder_ / "source/config/vehicle/truck.toml")
+      << "a name overrides it";
+  fs::remove(folder_ / "source/config/vehicle/car.toml");
+  EXPECT_THAT(error_of(""), HasSubstr("vehicle/car.toml does not exist; choose one by")) << "no other is taken instead";
+}
+
+TEST_F(OptionsTest, AFileThatIsNoChoiceIsNotReplacedByOne) {
+  std::ofstream(folder_ / "source/config/vehicle.toml") << "mine\n";
+  EXPECT_THROW(choose_vehicle(folder_ / "source/config", "car"), std::runtime_error);
+  EXPECT_FALSE(fs::is_symlink(folder_ / "source/config/vehicle.toml"));
+}
+
+TEST_F(OptionsTest, ExamplesHaveNamesForInstalledToolsOnly) {
+  fs::create_directories(folder_ / "usr/share/boresight/vehicle");
+  std::ofstream(folder_ / "usr/share/boresight/vehicle/example.toml") << "name = \"example\"\n";
+  EXPECT_EQ(example_vehicle_folder(folder_ / "usr/bin"), folder_ / "usr/share/boresight/vehicle");
+  EXPECT_EQ(example_vehicle_folder(folder_ / "usr/lib/boresight"), "") << "a service";
+  EXPECT_EQ(example_vehicle_folder(folder_ / "source/build/bin"), "") << "a build tree";
+  make_vehicle("car");
+  Configuration c = configuration("example");
+  EXPECT_THROW(static_cast<void>(c.vehicle_file()), config::Error);
+  c.examples = example_vehicle_folder(folder_ / "usr/bin");
+  EXPECT_EQ(c.vehicle_file(), c.examples / "example.toml");
+  c.vehicle_name = "car";
+  EXPECT_EQ(c.vehicle_file(), folder_ / "source/config/vehicle/car.toml");
+  c.vehicle_name = "";
+  EXPECT_EQ(c.vehicle_file(), folder_ / "source/config/vehicle/car.toml") << "no example is taken without its name";
 }
 
 }  // namespace

@@ -208,6 +208,25 @@ TEST(Reader, ListsOfIntegers) {
   EXPECT_THAT(error, HasSubstr("x.toml:5: e: must be an array of integers"));
 }
 
+TEST(Reader, NumberOfTablesIsChecked) {
+  Reader root = Reader::parse("few = []\n[[many]]\n[[many]]\n[[right]]\n", "x.toml");
+  for (const char* key : {"few", "many", "right", "absent"}) static_cast<void>(root.tables(key, {1, 1}));
+  EXPECT_EQ(error_of([&] { root.finish(); }),
+            "x.toml:1: few: has 0 tables; their number must be 1 … 1\n"
+            "x.toml:2: many: has 2 tables; their number must be 1 … 1");
+}
+
+TEST(Reader, ErrorsOfADamagedFileAreLimitedAndPrintable) {
+  std::string text = "word = \"\\u001b[2J\\nsecond line " + std::string(100'000, 'x') + "\"\n";
+  for (int i = 0; i < 10'000; ++i) text += "k" + std::to_string(i) + " = 1\n";
+  Reader root = Reader::parse(text, "x.toml");
+  static_cast<void>(root.choice<int>("word", {{"one", 1}}, 1));
+  const std::string problems = error_of([&] { root.finish(); });
+  EXPECT_LT(problems.size(), 20'000u);
+  EXPECT_THAT(problems, HasSubstr("x.toml:1: word: \"?[2J?second line xx"));
+  EXPECT_THAT(problems, HasSubstr("\nx.toml: 9951 more problems"));
+}
+
 TEST(Reader, UnreadableFileIsNamed) {
   EXPECT_THAT(error_of([] { static_cast<void>(Reader::open("/nowhere/x.toml")); }),
               HasSubstr("/nowhere/x.toml: cannot"));

@@ -57,6 +57,7 @@ TEST(VehicleFile, SortsRadarsById) {
   second.replace(second.find("id = 2"), 6, "id = 1");
   second.replace(second.find("front"), 5, "rear_");
   second.replace(second.find("10.13.1.113"), 11, "10.13.1.114");
+  second.replace(second.find("[3.5, 0.5"), 9, "[3.5, 0.4");
   const VehicleConfig vehicle = read(std::string(kEgo) + std::string(kRadar) + second);
   ASSERT_EQ(vehicle.radars.size(), 2u);
   EXPECT_EQ(vehicle.radars[0].id, 1u);
@@ -67,6 +68,12 @@ TEST(VehicleFile, RefusesTwoRadarsOfOneIdNameOrSource) {
   EXPECT_THAT(text, HasSubstr("radar[1].id: 2 is already used by front"));
   EXPECT_THAT(text, HasSubstr("radar[1].name"));
   EXPECT_THAT(text, HasSubstr("radar[1].source: is the source of front too"));
+  EXPECT_THAT(text, HasSubstr("radar[1].mounting_pose: is that of front too"));
+}
+
+TEST(VehicleFile, NeedsARadar) {
+  EXPECT_THAT(error_of("radar = []\n" + std::string(kEgo)),
+              HasSubstr("radar: has 0 tables; their number must be 1 … 16"));
 }
 
 TEST(VehicleFile, NameOfARadarMayHoldBlanksQuotesAndAnyLettersButNoControlCharacters) {

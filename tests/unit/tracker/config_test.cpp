@@ -174,12 +174,12 @@ TEST(TrackerConfig, EveryKeyIsReadIntoItsPlace) {
   std::vector<double> expected = numbers(Config{});
   EXPECT_EQ(test::expect_each_number_is_read(kShipped, read, "capacity"), expected.size() - 7);
   const Config config = parsed(
-      "[capacity]\nmeasurements = 100\nobjects = 101\nlocal_hypotheses = 102\ngroup_objects = 103\n"
+      "[capacity]\nmeasurements = 105\nobjects = 107\nlocal_hypotheses = 102\ngroup_objects = 103\n"
       "group_measurements = 104\nrows = 5\ncandidates = 106\n");
   const pmbm::Capacity& c = config.capacity;
   EXPECT_EQ(std::vector({c.measurements, c.objects, c.local_hypotheses, c.group_objects, c.group_measurements, c.rows,
                          c.candidates}),
-            (std::vector<std::size_t>{100, 101, 102, 103, 104, 5, 106}));
+            (std::vector<std::size_t>{105, 107, 102, 103, 104, 5, 106}));
 }
 
 TEST(TrackerConfig, ClutterTableIsRead) {
@@ -204,6 +204,14 @@ TEST(TrackerConfig, ClutterTableMustHaveEdgesThatIncrease) {
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 75]")), config::Error);
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_rate_edges_mps = [1, 2, 5, 20, 10, 60]")), config::Error);
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\nleast_range_rate_mps = 1.0")), config::Error);
+}
+
+TEST(TrackerConfig, KeysThatContradictEachOtherAreRefused) {
+  EXPECT_THROW(static_cast<void>(parsed("[capacity]\nobjects = 100\ngroup_objects = 101")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[capacity]\nmeasurements = 100\ngroup_measurements = 101")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[report]\nconfirmed_existence = 0.04\nleast_existence = 0.05")),
+               config::Error);
+  EXPECT_NO_THROW(static_cast<void>(parsed("[report]\nconfirmed_existence = 0.06\nleast_existence = 0.05")));
 }
 
 TEST(TrackerConfig, ClassesComeFromTheirOwnFile) {

@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/former_keys.hpp"
+#include "services/common/runtime/config/read_text.hpp"
 #include "services/common/runtime/config/toml.hpp"
 #include "services/common/runtime/config/toml_text.hpp"
+#include "services/common/text/printable.hpp"
 #include "services/common/text/near_names.hpp"
 
 namespace boresight::config {
 
 namespace {
+
+/// Capacities of an error message: a damaged file must not flood a log.
+constexpr std::size_t kMaxReportedProblems = 50;
+constexpr std::size_t kMaxProblemBytes = 4000;
 
 std::string format_number(double value) {
   return fmt::format("{:g}", value);
@@ -31,6 +35,16 @@ std::string describe(const Range& allowed) {
   if (has_min) return fmt::format("at least {}", format_number(allowed.min));
   if (has_max) return fmt::format("at most {}", format_number(allowed.max));
   return "any number";
+}
+
+/// A problem as one line of limited length, without control characters.
+std::string shown(std::string problem) {
+  if (problem.size() > kMaxProblemBytes) {
+    std::size_t end = kMaxProblemBytes;
+    while (end > 0 && (static_cast<unsigned char>(problem[end]) & 0xC0U) == 0x80U) --end;  // not inside a character
+    problem = problem.substr(0, end) + " …";
+  }
+  return text::printable(std::move(problem));
 }
 
 std::string_view type_name(toml::node_type type) {
@@ -114,7 +128,8 @@ struct Reader::Node::Document {
 };
 
 void Reader::Node::note(std::uint32_t at_line, std::string_view key, std::string_view problem) const {
-  document->errors.emplace_back(at_line, fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
+  document->errors.emplace_back(at_line,
+                                shown(fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem)));
 }
 
 void Reader::Node::add_what_is_allowed(std::string_view key, std::string_view allowed) {
@@ -134,8 +149,8 @@ Reader::Node& Reader::Node::add_child(std::string child_path, std::uint32_t chil
 namespace {
 
 [[noreturn]] void throw_parse_error(const toml::parse_error& error, std::string_view file) {
-  throw Error(
-      fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, decode_ascii(error.description())));
+  throw Error(shown(
+      fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, decode_ascii(error.description()))));
 }
 
 }  // namespace
@@ -156,14 +171,7 @@ Reader Reader::parse(std::string_view text, std::string_view name) {
 }
 
 Reader Reader::open(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(file, ignored)) {
-    throw Error(fmt::format("{}: cannot be read", file.string()));
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse(text.str(), file.string());
+  return parse(read_text(file), file.string());
 }
 
 double Reader::number(std::string_view key, Range allowed, double fallback) {
@@ -336,7 +344,7 @@ Reader Reader::table(std::string_view key) {
   return Reader(std::shared_ptr<Node>(node_, &child));
 }
 
-std::vector<Reader> Reader::tables(std::string_view key) {
+std::vector<Reader> Reader::tables(std::string_view key, Range count) {
   std::vector<Reader> readers;
   const toml::node* found = node_->find(key);
   if (found == nullptr) return readers;
@@ -344,6 +352,10 @@ std::vector<Reader> Reader::tables(std::string_view key) {
   if (array == nullptr) {
     node_->expect(*found, key, fmt::format("an array of tables ([[{}]])", key));
     return readers;
+  }
+  const auto size = static_cast<double>(array->size());
+  if (size < count.min || size > count.max) {
+    reject(key, fmt::format("has {} tables; their number must be {}", array->size(), describe(count)));
   }
   for (const toml::node& element : *array) {
     Node& child =
@@ -373,19 +385,29 @@ std::string Reader::place(std::string_view key) const {
 }
 
 void Reader::finish() {
+  auto& errors = node_->document->errors;
+  std::size_t unreported = 0;
   for (const Node& node : node_->document->nodes) {
     if (node.table == nullptr) continue;
     for (const auto& [key, value] : *node.table) {
       if (node.known.contains(key.str())) continue;
+      if (errors.size() >= kMaxReportedProblems) {
+        ++unreported;
+        continue;
+      }
       const std::string name = decode_ascii(key.str());
       node.note(key.source().begin.line, name, problem_of_unknown_key(name, node.known));
     }
   }
-  auto& errors = node_->document->errors;
   if (errors.empty()) return;
   std::stable_sort(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (errors.size() > kMaxReportedProblems) {
+    unreported += errors.size() - kMaxReportedProblems;
+    errors.resize(kMaxReportedProblems);
+  }
   std::string message;
   for (const auto& [line, text] : errors) message += (message.empty() ? "" : "\n") + text;
+  if (unreported > 0) message += fmt::format("\n{}: {} more problems", node_->document->file, unreported);
   throw Error(message);
 }
 

@@ -65,8 +65,8 @@ class Reader {
   void require(std::string_view key);
   /// Sub-table; an empty one if absent.
   [[nodiscard]] Reader table(std::string_view key);
-  /// Array of tables ([[key]]); empty if absent.
-  [[nodiscard]] std::vector<Reader> tables(std::string_view key);
+  /// Array of tables ([[key]]), as many as `count` allows; empty if absent.
+  [[nodiscard]] std::vector<Reader> tables(std::string_view key, Range count = {});
 
   /// Takes a key as known without reading it: it belongs to another reader.
   void skip(std::string_view key);

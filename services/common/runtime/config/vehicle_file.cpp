@@ -8,60 +8,15 @@
 #include "interfaces/messages/header.hpp"
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/recording/ip_address.hpp"
+#include "services/common/runtime/config/vehicle_source.hpp"
 #include "services/common/text/printable.hpp"
 
 namespace boresight::config {
 
 namespace {
 
-void check_address(Reader& reader, std::string_view key, const std::string& text) {
-  if (!text.empty() && !recording::parse_ip(text)) {
-    reader.reject(key, fmt::format("\"{}\" is neither an IPv4 nor an IPv6 address", text));
-  }
-}
-
-SourceAddress read_can(Reader& reader, SourceAddress source) {
-  reader.require("interface");
-  source.interface = reader.text("interface", "");
-  if (reader.has("interface") && (source.interface.empty() || source.interface.size() > 15)) {
-    reader.reject("interface", "must be an interface's name of 1 … 15 characters");
-  }
-  return source;
-}
-
-SourceAddress read_ip(Reader& reader, SourceAddress source) {
-  const bool someip = source.link == LinkKind::kSomeIp;
-  constexpr std::int64_t kEventPort = 30600;
-  reader.require("address");
-  reader.require(someip ? "instance" : "port");
-  source.address = reader.text("address", "");
-  source.port = static_cast<std::uint16_t>(reader.integer("port", {1, 65535}, someip ? kEventPort : 0));
-  source.sender = reader.text("sender", "");
-  source.interface = reader.text("interface", "");
-  if (someip) {
-    source.instance = static_cast<std::uint16_t>(reader.integer("instance", {1, 65534}, 1));
-    source.sender_port = static_cast<std::uint16_t>(reader.integer("sender_port", {1, 65535}, 0));
-    source.discovery_address = reader.text("discovery_address", source.discovery_address);
-    source.discovery_port =
-        static_cast<std::uint16_t>(reader.integer("discovery_port", {1, 65535}, source.discovery_port));
-    check_address(reader, "discovery_address", source.discovery_address);
-    if (source.sender.empty() != (source.sender_port == 0)) {
-      reader.reject("sender", "sender and sender_port are given together or not at all");
-    }
-    if (source.port == source.discovery_port) reader.reject("port", "is the port of service discovery");
-  }
-  check_address(reader, "address", source.address);
-  check_address(reader, "sender", source.sender);
-  return source;
-}
-
-SourceAddress read_source(Reader reader) {
-  SourceAddress source;
-  reader.require("link");
-  source.link = reader.choice<LinkKind>(
-      "link", {{"can", LinkKind::kCan}, {"udp", LinkKind::kUdp}, {"someip", LinkKind::kSomeIp}}, source.link);
-  return source.link == LinkKind::kCan ? read_can(reader, source) : read_ip(reader, source);
-}
+constexpr std::size_t kMaxRadarNameBytes = 31;
+constexpr std::size_t kMaxVehicleNameBytes = 63;
 
 /// `fallback` is the definition of the radar's profile.
 E2eConfig read_e2e(Reader reader, E2eConfig e2e) {
@@ -94,6 +49,9 @@ std::string read_mapping(Reader& reader, bool needed) {
   if (needed) reader.require("mapping");
   std::string mapping = reader.text("mapping", "");
   if (!needed && !mapping.empty()) reader.reject("mapping", "is for profile = \"mapping\" only");
+  if (needed && mapping.empty() && reader.has("mapping")) {
+    reader.reject("mapping", "must be the path of a mapping file");
+  }
   return mapping;
 }
 
@@ -146,9 +104,9 @@ SensorNoise read_noise(Reader reader) {
 
 AlignmentTolerance read_tolerance(Reader reader) {
   AlignmentTolerance tolerance;
-  tolerance.yaw_rad = reader.angle_deg("yaw_deg", {0.1, 45.0}, tolerance.yaw_rad);
-  tolerance.pitch_rad = reader.angle_deg("pitch_deg", {0.1, 45.0}, tolerance.pitch_rad);
-  tolerance.roll_rad = reader.angle_deg("roll_deg", {0.1, 45.0}, tolerance.roll_rad);
+  tolerance.yaw_rad = reader.angle_deg("yaw_deg", {0.1, kMaxTolerance_deg}, tolerance.yaw_rad);
+  tolerance.pitch_rad = reader.angle_deg("pitch_deg", {0.1, kMaxTolerance_deg}, tolerance.pitch_rad);
+  tolerance.roll_rad = reader.angle_deg("roll_deg", {0.1, kMaxTolerance_deg}, tolerance.roll_rad);
   return tolerance;
 }
 
@@ -174,17 +132,25 @@ EgoConfig read_ego(Reader reader, VehicleUse use) {
   return ego;
 }
 
+/// A name as in reports: displayed on one line.
+std::string read_name(Reader& reader, std::size_t max_bytes) {
+  std::string name = reader.text("name", "");
+  if (reader.has("name") && (name.empty() || name.size() > max_bytes)) {
+    reader.reject("name", fmt::format("must have 1 … {} bytes", max_bytes));
+  } else if (name.starts_with(' ') || name.ends_with(' ')) {
+    reader.reject("name", "must not begin or end with a blank");
+  }
+  if (text::printable(name) != name) reader.reject("name", "must not contain control characters");
+  return name;
+}
+
 RadarConfig read_radar(Reader reader, VehicleUse use) {
   RadarConfig radar;
   for (const char* key : {"id", "name", "mounting_pose"}) reader.require(key);
   if (use == VehicleUse::kLive || reader.has("source")) reader.require("profile");
   if (use == VehicleUse::kLive) reader.require("source");
   radar.id = static_cast<std::uint32_t>(reader.integer("id", {1, kMaxRadars}, 0));
-  radar.name = reader.text("name", "");
-  if (reader.has("name") && (radar.name.empty() || radar.name.size() > 31)) {
-    reader.reject("name", "must have 1 … 31 bytes");
-  }
-  if (text::printable(radar.name) != radar.name) reader.reject("name", "must not contain control characters");
+  radar.name = read_name(reader, kMaxRadarNameBytes);
   radar.profile = reader.choice<RadarProfile>("profile",
                                               {{"toyota", RadarProfile::kToyota},
                                                {"ars548", RadarProfile::kArs548},
@@ -229,28 +195,16 @@ RadarConfig read_radar(Reader reader, VehicleUse use) {
   return radar;
 }
 
-bool same_source(const RadarConfig& a, const RadarConfig& b) {
-  const SourceAddress& s = a.source;
-  const SourceAddress& t = b.source;
-  if (s.link != t.link) return false;
-  if (s.link == LinkKind::kCan) {
-    return a.profile == b.profile && s.interface == t.interface && a.sensor_id == b.sensor_id && a.mapping == b.mapping;
-  }
-  if (s.link == LinkKind::kSomeIp) return s.instance == t.instance;
-  return s.address == t.address && s.port == t.port && (s.sender == t.sender || s.sender.empty() || t.sender.empty());
-}
-
 }  // namespace
 
 VehicleConfig read_vehicle(Reader root, VehicleUse use) {
   VehicleConfig vehicle;
   for (const char* key : {"name", "radar"}) root.require(key);
   if (use == VehicleUse::kLive) root.require("ego");
-  vehicle.name = root.text("name", "");
+  vehicle.name = read_name(root, kMaxVehicleNameBytes);
   vehicle.ego = read_ego(root.table("ego"), use);
   std::vector<bool> has_source;
-  std::vector<Reader> readers = root.tables("radar");
-  if (readers.size() > kMaxRadars) root.reject("radar", fmt::format("at most {} radars", kMaxRadars));
+  std::vector<Reader> readers = root.tables("radar", {1, kMaxRadars});
   for (Reader& reader : readers) {
     RadarConfig radar = read_radar(reader, use);
     has_source.push_back(reader.has("source"));
@@ -258,8 +212,12 @@ VehicleConfig read_vehicle(Reader root, VehicleUse use) {
       const RadarConfig& other = vehicle.radars[i];
       if (other.id == radar.id) reader.reject("id", fmt::format("{} is already used by {}", radar.id, other.name));
       if (other.name == radar.name) reader.reject("name", fmt::format("\"{}\" is already used", radar.name));
-      if (has_source[i] && has_source.back() && same_source(other, radar)) {
-        reader.reject("source", fmt::format("is the source of {} too", other.name));
+      if (has_source[i] && has_source.back() && is_same_source(other, radar)) {
+        reader.reject("source", fmt::format("is the source of {} too; each radar must have its own", other.name));
+      }
+      if (reader.has("mounting_pose") && is_same_pose(other.mounting_pose, radar.mounting_pose)) {
+        reader.reject("mounting_pose",
+                      fmt::format("is that of {} too; each radar must have its own place or direction", other.name));
       }
     }
     vehicle.radars.push_back(std::move(radar));
@@ -270,14 +228,18 @@ VehicleConfig read_vehicle(Reader root, VehicleUse use) {
   return vehicle;
 }
 
-VehicleConfig read_vehicle_file(const std::filesystem::path& file, VehicleUse use) {
-  VehicleConfig vehicle = read_vehicle(Reader::open(file), use);
+VehicleConfig read_vehicle_at(const std::filesystem::path& file, Reader root, VehicleUse use) {
+  VehicleConfig vehicle = read_vehicle(std::move(root), use);
   const auto resolve = [&file](std::string& mapping) {
     if (!mapping.empty()) mapping = (file.parent_path() / mapping).lexically_normal().string();
   };
   resolve(vehicle.ego.mapping);
   for (RadarConfig& radar : vehicle.radars) resolve(radar.mapping);
   return vehicle;
+}
+
+VehicleConfig read_vehicle_file(const std::filesystem::path& file, VehicleUse use) {
+  return read_vehicle_at(file, Reader::open(file), use);
 }
 
 }  // namespace boresight::config
