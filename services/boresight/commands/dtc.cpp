@@ -131,7 +131,7 @@ int run_show(const DtcOptions& options) {
 }
 
 int run_clear(const DtcOptions& options) {
-  const std::uint32_t dtc = options.code == "all" ? dds::kAllDtcs : dtc_of(options.code);
+  const std::uint32_t dtc = options.code.empty() ? dds::kAllDtcs : dtc_of(options.code);
   const dds::Config config = dds_of(options);
   if (config.command_key_file.empty()) {
     throw UsageError("no secret: give --key FILE, or set dds.command_key_file in health.toml");
@@ -157,7 +157,7 @@ int run_clear(const DtcOptions& options) {
   if (!is_answered) throw Finding("the health service did not reply");
   const diagnostics::CommandReply& reply = *client.reply(number);
   if (!reply.is_accepted()) throw Finding("refused: " + reply.reason());
-  terminal::print(options.code == "all" ? "all codes cleared\n" : options.code + " cleared\n");
+  terminal::print(options.code.empty() ? "all codes cleared\n" : options.code + " cleared\n");
   return exit_code::kSuccess;
 }
 
@@ -206,12 +206,12 @@ void add_dtc_command(CLI::App& app, int& exit_code) {
   auto clear = std::make_shared<DtcOptions>();
   CLI::App* const clear_command =
       add(*command, "clear", "Clears one code, or all. Needs the secret of the ECU.", *clear);
-  clear_command->add_option("CODE", clear->code, "Trouble code, or \"all\"")->required();
+  clear_command->add_option("CODE", clear->code, "Trouble code; default: all codes");
   clear_command->add_option("--key", clear->key, "File with the secret; default: dds.command_key_file of health.toml")
       ->type_name("FILE");
   on_call(
       *clear_command, exit_code,
-      {"dtc clear all --key /etc/boresight/command.key", "the code is cleared",
+      {"dtc clear --key /etc/boresight/command.key", "the code is cleared",
        "the health service refused, or did not answer"},
       [clear] { return run_clear(*clear); }, &clear->configuration);
 

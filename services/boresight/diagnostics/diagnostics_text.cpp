@@ -107,7 +107,7 @@ std::string to_line(const diagnostics::SensorHealth& s) {
                                    alignment_words::speed_change_sentence(change_of(s.speed_change()))}) {
     if (!event.empty()) line += "  " + event;
   }
-  for (const std::string& code : s.trouble_codes()) line += "  " + text::printable(code);
+  if (!s.trouble_codes().empty()) line += "  " + text::printable(s.trouble_codes());
   if (s.conditions() != 0) line += "  reported by the sensor: " + words_of_conditions(s.conditions());
   return line;
 }

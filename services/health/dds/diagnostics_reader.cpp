@@ -3,10 +3,10 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "generated/diagnostic_arrayPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
+#include "services/health/dds/guarded_type.hpp"
 #include "services/health/dds/participant.hpp"
 
 namespace boresight::dds {
@@ -39,13 +39,12 @@ class DiagnosticsReader::Readers {
  public:
   Readers(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array)
       : sensor_health_(on_sensor_health), diagnostic_array_(on_diagnostic_array), participant_(config, "boresight") {
-    using eprosima::fastdds::dds::TypeSupport;
     if (on_sensor_health) {
-      participant_.reader(kSensorHealthTopic, TypeSupport(new diagnostics::SensorHealthPubSubType()),
-                          kReadLatestOfEachRadar, &sensor_health_);
+      participant_.reader(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(), kReadLatestOfEachRadar,
+                          &sensor_health_);
     }
     if (on_diagnostic_array) {
-      participant_.reader(kDiagnosticsTopic, TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
+      participant_.reader(kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(),
                           kReadArrays, &diagnostic_array_);
     }
   }

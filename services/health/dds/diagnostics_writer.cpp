@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "generated/diagnostic_arrayPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
+#include "services/health/dds/guarded_type.hpp"
 #include "services/health/dds/to_dds.hpp"
 
 namespace boresight::dds {
@@ -18,13 +18,10 @@ constexpr int kWrittenArrays = 1;
 
 DiagnosticsWriter::DiagnosticsWriter(Participant& participant, const VehicleConfig& vehicle)
     : vehicle_(vehicle),
-      sensor_health_(participant.writer(kSensorHealthTopic,
-                                        eprosima::fastdds::dds::TypeSupport(new diagnostics::SensorHealthPubSubType()),
+      sensor_health_(participant.writer(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(),
                                         kWrittenLatestOfEachRadar)),
       diagnostics_(participant.writer(
-          kDiagnosticsTopic,
-          eprosima::fastdds::dds::TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
-          kWrittenArrays)) {}
+          kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(), kWrittenArrays)) {}
 
 bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) {
   bool taken = true;

@@ -5,10 +5,10 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "generated/fault_memoryPubSubTypes.h"
 #include "services/health/core/faults/status.hpp"
+#include "services/health/dds/guarded_type.hpp"
 #include "services/health/dds/participant.hpp"
 
 namespace boresight::dds {
@@ -36,13 +36,13 @@ class FaultMemoryClient::Entities {
  public:
   explicit Entities(const Config& config)
       : participant(config, "boresight"),
-        records(participant.reader(kFaultRecordTopic, fast::TypeSupport(new diagnostics::FaultRecordPubSubType()),
-                                   kLatestOfEachEvent, nullptr)),
-        state(participant.reader(kFaultMemoryStateTopic,
-                                 fast::TypeSupport(new diagnostics::FaultMemoryStatePubSubType()), 1, nullptr)),
-        replies(participant.reader(kCommandReplyTopic, fast::TypeSupport(new diagnostics::CommandReplyPubSubType()),
-                                   kReceivedReplies, nullptr)),
-        commands(participant.writer(kCommandTopic, fast::TypeSupport(new diagnostics::ClearCommandPubSubType()), 1,
+        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), kLatestOfEachEvent,
+                                   nullptr)),
+        state(
+            participant.reader(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), 1, nullptr)),
+        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), kReceivedReplies,
+                                   nullptr)),
+        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), 1,
                                     Participant::Durability::kVolatile)) {}
 
   Participant participant;

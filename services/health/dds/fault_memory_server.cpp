@@ -6,18 +6,17 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fmt/format.h>
 
 #include "generated/fault_memoryPubSubTypes.h"
 #include "interfaces/catalogue/catalogue.hpp"
 #include "services/common/alignment_words/alignment_words.hpp"
+#include "services/health/dds/guarded_type.hpp"
 
 namespace boresight::dds {
 
 namespace {
 
-using eprosima::fastdds::dds::TypeSupport;
 using health::FreezeFrame;
 
 constexpr int kLatest = 1;
@@ -92,13 +91,12 @@ FaultMemoryServer::FaultMemoryServer(Participant& participant, const VehicleConf
     : vehicle_(vehicle),
       memory_(memory),
       key_(key),
-      records_(participant.writer(kFaultRecordTopic, TypeSupport(new diagnostics::FaultRecordPubSubType()), kLatest)),
-      state_(participant.writer(kFaultMemoryStateTopic, TypeSupport(new diagnostics::FaultMemoryStatePubSubType()),
-                                kLatest)),
-      replies_(participant.writer(kCommandReplyTopic, TypeSupport(new diagnostics::CommandReplyPubSubType()),
-                                  kWaitingCommands)),
-      commands_(participant.reader(kCommandTopic, TypeSupport(new diagnostics::ClearCommandPubSubType()),
-                                   kWaitingCommands, nullptr, Participant::Durability::kVolatile)),
+      records_(participant.writer(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), kLatest)),
+      state_(participant.writer(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), kLatest)),
+      replies_(
+          participant.writer(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), kWaitingCommands)),
+      commands_(participant.reader(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), kWaitingCommands,
+                                   nullptr, Participant::Durability::kVolatile)),
       challenge_(new_challenge()),
       is_sent_(memory.records().size()),
       sent_status_(memory.records().size()) {}

@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
@@ -68,14 +67,14 @@ void add_value(DiagnosticStatus_& status, std::string_view key, std::string valu
   status.values_().push_back(std::move(pair));
 }
 
-/// Trouble codes of the failed tests of a radar.
-std::vector<std::string> trouble_codes(const SensorHealth& sensor) {
-  std::vector<std::string> codes;
+/// Trouble codes of the failed tests of a radar, separated by blanks.
+std::string trouble_codes(const SensorHealth& sensor) {
+  std::string codes;
   for (std::size_t i = 0; i < kNumberOfRadarEvents; ++i) {
     const auto event = static_cast<RadarEvent>(i);
     if ((sensor.failed_events & bit_of(event)) == 0) continue;
-    codes.push_back(
-        health::code_text(health::dtc_of({health::kind_of(event), static_cast<std::uint8_t>(sensor.radar_id)})));
+    if (!codes.empty()) codes += ' ';
+    codes += health::code_text(health::dtc_of({health::kind_of(event), static_cast<std::uint8_t>(sensor.radar_id)}));
   }
   return codes;
 }
@@ -105,8 +104,8 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
                               explanation.empty() ? "" : ": ", explanation));
   add_value(status, "data_qualifier", std::string(name_of(sensor.data_qualifier)));
   add_value(status, "extended_qualifier", std::string(name_of(sensor.extended_qualifier)));
-  const std::vector<std::string> codes = trouble_codes(sensor);
-  add_value(status, "trouble codes", codes.empty() ? "none" : fmt::format("{}", fmt::join(codes, " ")));
+  const std::string codes = trouble_codes(sensor);
+  add_value(status, "trouble codes", codes.empty() ? "none" : codes);
   add_value(status, "rate_hz", fmt::format("{:.1f} of {:.1f}", sensor.rate_hz, sensor.expected_rate_hz));
   add_axis(status, "yaw error", sensor.yaw);
   add_axis(status, "pitch error", sensor.pitch);

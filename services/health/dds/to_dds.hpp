@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "generated/diagnostic_array.h"
 #include "generated/sensor_health.h"

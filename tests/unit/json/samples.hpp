@@ -194,7 +194,7 @@ inline std::vector<std::string> reflector_runs() {
 inline std::vector<std::string> sensor_healths() {
   diagnostics::SensorHealth sensor;
   sensor.radar_name(kName);
-  sensor.trouble_codes({"C1A02-87"});
+  sensor.trouble_codes("C1A02-87");
   diagnostics::SensorHealth unknown;
   unknown.speed_scale(std::nanf(""));
   unknown.yaw().error_rad(std::nanf(""));

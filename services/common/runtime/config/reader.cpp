@@ -13,8 +13,8 @@
 #include "services/common/runtime/config/read_text.hpp"
 #include "services/common/runtime/config/toml.hpp"
 #include "services/common/runtime/config/toml_text.hpp"
-#include "services/common/text/printable.hpp"
 #include "services/common/text/near_names.hpp"
+#include "services/common/text/printable.hpp"
 
 namespace boresight::config {
 
