@@ -20,6 +20,7 @@ enum class ExtendedQualifier : std::uint8_t {
   kExternalDisturbance = 7,
   kInitialising = 8,  ///< not tested yet: no data so far, or the mounting was never verified
   kWrongInput = 9,    ///< an input contradicts the vehicle file: SensorHealth::finding. Not a misalignment
+  kDelayed = 10,      ///< scans arrive later after their measurement than the latency budget allows
 };
 
 /// What the health service tests for one radar: bits of SensorHealth::failed_events and untested_events. Each is an
@@ -27,43 +28,61 @@ enum class ExtendedQualifier : std::uint8_t {
 /// repair.
 enum class RadarEvent : std::uint8_t {
   kDefective = 0,
-  kBlocked = 1,
-  kNoData = 2,
-  kYawBeyondLimit = 3,
-  kPitchBeyondLimit = 4,
-  kRollBeyondLimit = 5,
-  kWrongInput = 6,
-  kYawMisaligned = 7,
-  kPitchMisaligned = 8,
-  kRollMisaligned = 9,
-  kPartlyBlocked = 10,
-  kRejectedData = 11,
-  kSuspectData = 12,
-  kRateReduced = 13,
-  kSupply = 14,  // from here on without effect on the verdict
-  kTemperature = 15,
-  kUnsynchronised = 16,
-  kWithoutEgoMotion = 17,
+  kBlocked = 1,  ///< by the sensor's word
+  kBlind = 2,    ///< by its detections: almost none, or none beyond a short distance
+  kNoData = 3,
+  kFrozen = 4,  ///< the same data again and again
+  kEgoContradiction = 5,
+  kYawBeyondLimit = 6,
+  kPitchBeyondLimit = 7,
+  kRollBeyondLimit = 8,
+  kWrongInput = 9,
+  kYawMisaligned = 10,
+  kPitchMisaligned = 11,
+  kRollMisaligned = 12,
+  kPartlyBlocked = 13,  ///< by the sensor's word
+  kReducedSight = 14,   ///< by its detections: fewer, or nearer, than it is used to
+  kDisturbed = 15,      ///< interference
+  kRejectedData = 16,
+  kSuspectData = 17,
+  kRateReduced = 18,
+  kRateTooHigh = 19,
+  kDelayed = 20,
+  kSupply = 21,  // from here on without effect on the verdict
+  kTemperature = 22,
+  kUnsynchronised = 23,
+  kWithoutEgoMotion = 24,
 };
-inline constexpr std::size_t kNumberOfRadarEvents = 18;
+inline constexpr std::size_t kNumberOfRadarEvents = 25;
 
 [[nodiscard]] constexpr std::uint32_t bit_of(RadarEvent event) {
   return 1u << static_cast<unsigned>(event);
 }
 
-/// Misalignment of one axis against its tolerance.
+/// What the error of an axis does to the use of the data.
+enum class AxisEffect : std::uint8_t {
+  kUnknown = 0,       ///< not determined
+  kCompensated = 1,   ///< within the tolerance; the corrector removes it
+  kReduced = 2,       ///< beyond the tolerance
+  kNotAvailable = 3,  ///< beyond the limit of use
+};
+
+/// Misalignment of one axis against its tolerance and its limit of use.
 struct AxisHealth {
   float error_rad;  ///< actual − nominal mounting
   float std_rad;
   float tolerance_rad;
+  float limit_rad;
+  float beyond_tolerance_probability;  ///< of |error| > tolerance, for an error of Gaussian distribution
+  float beyond_limit_probability;
   std::uint8_t observable;        ///< 1 if the data determine this axis
   std::uint8_t beyond_tolerance;  ///< 1 if exceeded with the configured confidence, debounced
   /// 1: the values are about the vehicle's axis, because that error is beyond its tolerance or the sensor's axis is
   /// not observable; 0: about the sensor's own axis.
   std::uint8_t about_vehicle_axis;
-  std::uint8_t reserved;
+  AxisEffect effect;
 };
-static_assert(sizeof(AxisHealth) == 16);
+static_assert(sizeof(AxisHealth) == 28);
 
 struct SensorHealth {
   std::uint32_t radar_id;  ///< 0: unused entry
@@ -87,6 +106,9 @@ struct SensorHealth {
   /// Effect of the misalignment (Burza 2025, §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
+  float lost_coverage_ratio;      ///< share of the region of interest that the turned field of view no longer covers
+  float range_loss_ratio;         ///< of the range at which a target on the axis of interest is detected
+  float velocity_error_mps;       ///< lateral error of an object's velocity vector at the present speed
   std::uint32_t conditions;       ///< source_condition bits: the sensor's latest self-diagnosis
   std::uint32_t failed_events;    ///< RadarEvent bits: tests whose last known result is a failure
   std::uint32_t untested_events;  ///< RadarEvent bits: tests without a result that still counts
@@ -100,7 +122,7 @@ struct SensorHealth {
   std::uint64_t e2e_repeated;  ///< messages with the previous counter, dropped
   std::uint64_t e2e_wrong;     ///< messages with a wrong CRC, length, Data ID or sequence, dropped
 };
-static_assert(sizeof(SensorHealth) == 200);
+static_assert(sizeof(SensorHealth) == 248);
 
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< no heartbeat yet
@@ -132,6 +154,28 @@ static_assert(sizeof(ServiceHealth) == 64);
 
 inline constexpr std::size_t kMaxServices = 16;
 
+/// What the health service tests for the pipeline as a whole: bits of PipelineHealth::failed_events.
+enum class PipelineEvent : std::uint8_t {
+  kLosing = 0,      ///< scans are lost or dropped between the stages
+  kQueueing = 1,    ///< scans wait too long for a stage
+  kWorkBudget = 2,  ///< a stage ends its work on a scan before it is complete, to be in time
+  kLate = 3,        ///< from arrival to track list longer than the latency budget
+  kSilent = 4,      ///< no track list although scans arrive
+};
+inline constexpr std::size_t kNumberOfPipelineEvents = 5;
+
+/// The way of the scans from arrival to track list, over the last supervision window.
+struct PipelineHealth {
+  DataQualifier data_qualifier;
+  std::array<std::uint8_t, 3> reserved;
+  std::uint32_t failed_events;  ///< PipelineEvent bits
+  std::uint32_t lost_scans;     ///< lost or dropped between the stages
+  std::uint32_t budget_hits;    ///< scans that met a work budget
+  float queueing_max_ms;        ///< longest time that a scan waited for a stage
+  float latency_p99_ms;         ///< from arrival to track list
+};
+static_assert(sizeof(PipelineHealth) == 24);
+
 struct HealthReport {
   static constexpr std::uint32_t kVersion = 5;
 
@@ -142,14 +186,15 @@ struct HealthReport {
   std::uint32_t number_of_services;
   float latency_p50_ms;  ///< reception to track list, over the last supervision window
   float latency_max_ms;
-  std::uint32_t stored_events;          ///< events in the fault memory that are confirmed or pending
-  AlignmentVehicleChange load_change;   ///< of the vehicle: the latest that an estimate reported
-  AlignmentVehicleChange speed_change;  //
+  std::uint32_t stored_events;  ///< events in the fault memory that are confirmed or pending
+  PipelineHealth pipeline;
+  AlignmentVehicleChange load_change;  ///< of the vehicle: the latest that an estimate reported
+  AlignmentVehicleChange speed_change;
   std::array<SensorHealth, kMaxRadars> sensors;
   std::array<ServiceHealth, kMaxServices> services;
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 200 + kMaxServices * 64);
+static_assert(sizeof(HealthReport) == 104 + 24 + 24 + 32 + kMaxRadars * 248 + kMaxServices * 64);
 
 }  // namespace boresight

@@ -30,7 +30,7 @@ template <typename Enum, std::size_t N>
   return detail::word_of(kNames, qualifier);
 }
 [[nodiscard]] constexpr std::string_view name_of(ExtendedQualifier qualifier) {
-  constexpr std::array<std::string_view, 10> kNames = {"NORMAL",
+  constexpr std::array<std::string_view, 11> kNames = {"NORMAL",
                                                        "MISALIGNED",
                                                        "NO_DATA",
                                                        "RATE_REDUCED",
@@ -39,7 +39,8 @@ template <typename Enum, std::size_t N>
                                                        "BEGINNING_BLOCKAGE",
                                                        "EXTERNAL_DISTURBANCE",
                                                        "INITIALISING",
-                                                       "WRONG_INPUT"};
+                                                       "WRONG_INPUT",
+                                                       "DELAYED"};
   return detail::word_of(kNames, qualifier);
 }
 /// The names of source_condition bits, as in "partly blocked, supply"; empty without bits.
@@ -84,7 +85,8 @@ template <typename Enum, std::size_t N>
                                                                     "wrong version",
                                                                     "over capacity",
                                                                     "link",
-                                                                    "input dropped"};
+                                                                    "input dropped",
+                                                                    "work budget"};
   return detail::word_of(kNames, fault);
 }
 

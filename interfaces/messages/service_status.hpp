@@ -21,8 +21,9 @@ enum class Fault : std::uint8_t {
   kCapacity = 9,          ///< detections, clusters or tracks beyond capacity
   kLink = 10,             ///< socket error, interface down, kernel drops
   kInputDropped = 11,     ///< a waiting scan was superseded by a newer one of its radar: the service was too slow
+  kWorkBudget = 12,       ///< the work on a scan ended before it was complete, to be in time
 };
-inline constexpr std::size_t kNumberOfFaults = 12;
+inline constexpr std::size_t kNumberOfFaults = 13;
 
 /// A sensor's self-diagnosis in its status messages.
 namespace source_condition {
@@ -55,7 +56,7 @@ static_assert(sizeof(SourceStatistics) == 72);
 /// Published by every service each heartbeat period. Counters never decrease while a process lives. `incarnation_ns`
 /// is its start time, so that a change shows a restart.
 struct ServiceStatus {
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
 
   MessageHeader header;  ///< source_id is the service's index in the catalogue
   std::int64_t incarnation_ns;
@@ -72,7 +73,7 @@ struct ServiceStatus {
   float latency_mean_us;
   float latency_max_us;
   std::uint32_t latency_count;  ///< outputs in these figures
-  std::uint32_t reserved2;
+  float queueing_max_us;        ///< longest time between the end of the stage before and the begin of this one
   std::array<std::uint64_t, kNumberOfFaults> faults;
   std::array<SourceStatistics, kMaxRadars> sources;
   std::array<char, 128> last_fault;  ///< description of the latest rejected input, zero-terminated; empty if none

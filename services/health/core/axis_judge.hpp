@@ -52,10 +52,13 @@ class AxisJudge {
     return {.error_rad = static_cast<float>(error_rad_),
             .std_rad = static_cast<float>(std_rad_),
             .tolerance_rad = static_cast<float>(tolerance_rad_),
+            .limit_rad = 0.0F,
+            .beyond_tolerance_probability = 0.0F,
+            .beyond_limit_probability = 0.0F,
             .observable = observable_ ? std::uint8_t{1} : std::uint8_t{0},
             .beyond_tolerance = is_beyond() ? std::uint8_t{1} : std::uint8_t{0},
             .about_vehicle_axis = 0,
-            .reserved = 0};
+            .effect = AxisEffect::kUnknown};
   }
 
  private:

@@ -138,6 +138,7 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns, std::int64_t epo
   report_change(EventKind::kLoadChange, load_change_, now_ns);
   report_change(EventKind::kSpeedSignalChange, speed_change_, now_ns);
   out.reserved = {};
+  out.pipeline = {};
   out.load_change = load_change_;
   out.speed_change = speed_change_;
   out.sensors = {};

@@ -172,7 +172,7 @@ diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size
                                            std::int64_t time_ns) {
   // The enumerations have the same order in the message and in the IDL; a value beyond them is sent as the last one.
   static_assert(static_cast<int>(DataQualifier::kNotAvailable) == diagnostics::NOT_AVAILABLE);
-  static_assert(static_cast<int>(ExtendedQualifier::kWrongInput) == diagnostics::WRONG_INPUT);
+  static_assert(static_cast<int>(ExtendedQualifier::kDelayed) == diagnostics::DELAYED);
   const SensorHealth& sensor = report.sensors.at(index);
   diagnostics::SensorHealth out;
   out.radar_id(sensor.radar_id);

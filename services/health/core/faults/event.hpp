@@ -21,16 +21,25 @@ enum class EventKind : std::uint8_t {
   kServiceLosing,
   kServiceDegraded,
   kServiceRestarted,
+  kPipelineLosing,  // in the order of PipelineEvent
+  kPipelineQueueing,
+  kPipelineWorkBudget,
+  kPipelineLate,
+  kPipelineSilent,
   kLoadChange,
   kSpeedSignalChange,
   kDiagnosticsMute,
   kFaultMemoryLost,
   kFaultMemoryUnwritable,
 };
-inline constexpr std::size_t kNumberOfEventKinds = kNumberOfRadarEvents + 10;
+inline constexpr std::size_t kNumberOfEventKinds = kNumberOfRadarEvents + 15;
 
 [[nodiscard]] constexpr EventKind kind_of(RadarEvent event) {
   return static_cast<EventKind>(event);
+}
+
+[[nodiscard]] constexpr EventKind kind_of(PipelineEvent event) {
+  return static_cast<EventKind>(static_cast<unsigned>(EventKind::kPipelineLosing) + static_cast<unsigned>(event));
 }
 
 /// One tested thing: a kind and its subject.
