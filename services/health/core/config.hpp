@@ -2,12 +2,13 @@
 #pragma once
 
 #include "services/health/core/faults/fault_memory.hpp"
+#include "services/health/core/function/delivery_monitor.hpp"
+#include "services/health/core/function/sight_monitor.hpp"
 
 namespace boresight::health {
 
 struct Config {
   double window_s = 2.0;            ///< time window of rates, losses and latencies
-  double min_rate_ratio = 0.7;      ///< a radar that delivers less than this share of its rate is RATE_REDUCED
   double max_rejected_ratio = 0.2;  ///< a larger share of rejected frames is INVALID_DATA
   double max_suspect_ratio = 0.1;   ///< a larger share of scans of doubtful integrity is INVALID_DATA
   double restart_memory_s = 3.0;    ///< time for which a service counts as restarted
@@ -19,6 +20,8 @@ struct Config {
   double clear_ratio = 0.9;          ///< within: the interval's upper end is below this share of the tolerance
   double inhibit_rad = 0.1274;       ///< 7.3°: beyond it the sensor is NOT_AVAILABLE
   double reference_range_m = 100.0;  ///< range at which the lateral displacement is stated
+  DeliveryConfig delivery;
+  SightConfig sight;
   FaultMemoryConfig faults;
 };
 

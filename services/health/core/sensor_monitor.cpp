@@ -26,6 +26,30 @@ double vehicle_tolerance(const RadarConfig& radar, Eigen::Index axis) {
   return (Eigen::Vector3d(t.yaw_rad, t.pitch_rad, t.roll_rad).array() / angles.array().max(1e-3)).minCoeff();
 }
 
+/// Time from measurement to the arrival at the gateway; negative if the measurement has no stamp of the sensor.
+std::int64_t age_at_arrival_ns(const MessageHeader& header) {
+  const bool is_stamped =
+      header.time_source == TimeSource::kSensorSynchronised || header.time_source == TimeSource::kSensorFreeRunning;
+  const std::int64_t arrival_ns = header.stage(Stage::kIngest).begin_ns;
+  return is_stamped && arrival_ns > 0 ? std::max<std::int64_t>(0, arrival_ns - header.measurement_time_ns) : -1;
+}
+
+/// Detections that the sensor does not forbid to use, and the range that nine tenths of them do not exceed.
+Sight sight_of(const RadarScan& scan) {
+  constexpr double kShare = 0.9;
+  std::array<float, kMaxDetections> ranges;
+  std::size_t count = 0;
+  const std::size_t detections = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
+  for (std::size_t i = 0; i < detections; ++i) {
+    if ((scan.detection_flags[i] & detection_flag::kUnusable) == 0) ranges[count++] = scan.range_m[i];
+  }
+  if (count == 0) return {};
+  const auto end = ranges.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto nth = ranges.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(count - 1));
+  std::nth_element(ranges.begin(), nth, end);
+  return {.detections = static_cast<double>(count), .range_m = static_cast<double>(*nth)};
+}
+
 /// The verdict on an axis as the fault memory has it. If this process has no estimate of the axis, its values are those
 /// at the latest occurrence.
 void show_last_known(AxisHealth& axis, const FaultRecord* record, AlignmentParameter parameter) {
@@ -44,14 +68,16 @@ void show_last_known(AxisHealth& axis, const FaultRecord* record, AlignmentParam
 
 SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns)
     : radar_id_(radar.id),
-      expected_rate_hz_(1.0 / radar.cycle_time_s),
-      deadline_ns_(static_cast<std::int64_t>(radar.deadline_s * 1e9)),
       config_(config),
-      start_ns_(start_ns),
-      rate_(std::max(config.window_s, 10.0 * radar.cycle_time_s)),
+      delivery_(config.delivery, 1.0 / radar.cycle_time_s, radar.deadline_s, radar.latency_s, config.window_s,
+                start_ns),
+      sight_(config.sight),
       messages_(config.window_s),
       rejected_(config.window_s),
       suspect_(config.window_s),
+      received_(config.window_s),
+      frozen_(config.window_s),
+      contradicting_(config.window_s),
       yaw_{{config, radar.tolerance.yaw_rad}, {config, vehicle_tolerance(radar, 2)}},
       pitch_{{config, radar.tolerance.pitch_rad}, {config, vehicle_tolerance(radar, 1)}},
       roll_{{config, radar.tolerance.roll_rad}, {config, vehicle_tolerance(radar, 0)}} {}
@@ -75,18 +101,21 @@ AxisHealth SensorMonitor::Angle::health() const {
 }
 
 void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
-  // The rate restarts after a silence. Otherwise it would stay low for a window after the radar has returned.
-  if (!delivers(now_ns)) rate_.clear();
   const std::uint64_t sequence = scan.header.source_sequence;
   // A restarted gateway counts from 1 again: no scan was lost.
   if (last_sequence_ != 0 && sequence > last_sequence_ + 1) lost_scans_ += sequence - last_sequence_ - 1;
   last_sequence_ = sequence;
-  ++scans_;
-  last_ns_ = now_ns;
-  rate_.add(now_ns);
+  delivery_.observe(age_at_arrival_ns(scan.header), now_ns);
+  using namespace scan_integrity;
+  received_.add(now_ns);
+  if ((scan.integrity & (kFrozen | kRepeated)) != 0) frozen_.add(now_ns);
+  if ((scan.integrity & kContradictsEgo) != 0) contradicting_.add(now_ns);
+  const Sight sight = sight_of(scan);
+  sight_.observe(sight, speed_mps_, now_ns);
   constexpr double kSmoothing = 0.1;
-  const double count = scan.number_of_valid_detections;
-  detections_per_scan_ = scans_ == 1 ? count : detections_per_scan_ + kSmoothing * (count - detections_per_scan_);
+  detections_per_scan_ = delivery_.scans() == 1
+                             ? sight.detections
+                             : detections_per_scan_ + kSmoothing * (sight.detections - detections_per_scan_);
 }
 
 void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
@@ -150,9 +179,9 @@ void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now
 SensorHealth SensorMonitor::quantities(std::int64_t now_ns) {
   SensorHealth health{};
   health.radar_id = radar_id_;
-  health.rate_hz = static_cast<float>(delivers(now_ns) ? rate_.rate_hz(now_ns) : 0.0);
-  health.expected_rate_hz = static_cast<float>(expected_rate_hz_);
-  health.last_seen_s = scans_ == 0 ? -1.0F : static_cast<float>(static_cast<double>(now_ns - last_ns_) * 1e-9);
+  health.rate_hz = static_cast<float>(delivery_.rate_hz(now_ns));
+  health.expected_rate_hz = static_cast<float>(delivery_.expected_rate_hz());
+  health.last_seen_s = static_cast<float>(delivery_.last_seen_s(now_ns));
   health.detections_per_scan = static_cast<float>(detections_per_scan_);
   health.yaw = yaw_.health();
   health.pitch = pitch_.health();
@@ -166,7 +195,7 @@ SensorHealth SensorMonitor::quantities(std::int64_t now_ns) {
   health.range_rate_scale = range_rate_scale_;
   health.drift = drift_;
   health.reference_range_m = static_cast<float>(config_.reference_range_m);
-  health.scans = scans_;
+  health.scans = delivery_.scans();
   health.lost_scans = lost_scans_;
   health.conditions = last_statistics_.conditions & ~source_condition::kReported;
   health.step_changes = step_changes_;
@@ -226,15 +255,23 @@ void SensorMonitor::test(FaultMemory& faults, std::int64_t now_ns, const SensorH
         std::pair{RadarEvent::kWithoutEgoMotion, kWithoutEgoMotion}}) {
     report(radar_event, has_reported, (health.conditions & condition) != 0);
   }
-  const bool is_young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
-  report(RadarEvent::kNoData, !is_young, !delivers(now_ns));
+  faults.report(event(RadarEvent::kNoData), delivery_.silent(now_ns), now_ns, frame);
+  faults.report(event(RadarEvent::kRateReduced), delivery_.rate_reduced(now_ns), now_ns, frame);
+  faults.report(event(RadarEvent::kRateTooHigh), delivery_.rate_too_high(now_ns), now_ns, frame);
+  faults.report(event(RadarEvent::kDelayed), delivery_.delayed(now_ns), now_ns, frame);
   const double rejected = static_cast<double>(rejected_.sum(now_ns));
   const double published = static_cast<double>(messages_.sum(now_ns));
   const double suspect = static_cast<double>(suspect_.sum(now_ns));
   report(RadarEvent::kRejectedData, has_statistics_, rejected > config_.max_rejected_ratio * (published + rejected));
   report(RadarEvent::kSuspectData, has_statistics_, suspect > config_.max_suspect_ratio * published);
-  report(RadarEvent::kRateReduced, delivers(now_ns) && rate_.is_full(now_ns),
-         health.rate_hz < config_.min_rate_ratio * expected_rate_hz_);
+  const auto received = static_cast<double>(received_.sum(now_ns));
+  const auto exceeds = [&](RateWindow& scans) {
+    return static_cast<double>(scans.sum(now_ns)) > config_.max_suspect_ratio * received;
+  };
+  report(RadarEvent::kFrozen, received > 0.0, exceeds(frozen_));
+  report(RadarEvent::kEgoContradiction, received > 0.0, exceeds(contradicting_));
+  faults.report(event(RadarEvent::kBlind), sight_.blind(), now_ns, frame);
+  faults.report(event(RadarEvent::kReducedSight), sight_.reduced(), now_ns, frame);
   report(RadarEvent::kWrongInput, has_estimate_, finding_ != AlignmentFinding::kNone);
   test_axis(faults, RadarEvent::kYawMisaligned, RadarEvent::kYawBeyondLimit, yaw_, now_ns, frame);
   test_axis(faults, RadarEvent::kPitchMisaligned, RadarEvent::kPitchBeyondLimit, pitch_, now_ns, frame);
@@ -277,6 +314,7 @@ void SensorMonitor::set_verdict(SensorHealth& health, const FaultMemory& faults)
 }
 
 SensorHealth SensorMonitor::judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle) {
+  speed_mps_ = vehicle.speed_mps;
   SensorHealth health = quantities(now_ns);
   health.lateral_displacement_m = lateral_displacement_m(health.yaw);
   test(faults, now_ns, health, vehicle);

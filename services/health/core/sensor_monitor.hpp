@@ -11,6 +11,8 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/health/core/axis_judge.hpp"
 #include "services/health/core/faults/fault_memory.hpp"
+#include "services/health/core/function/delivery_monitor.hpp"
+#include "services/health/core/function/sight_monitor.hpp"
 #include "services/health/core/rate_window.hpp"
 
 namespace boresight::health {
@@ -33,23 +35,23 @@ class SensorMonitor {
 
   [[nodiscard]] std::uint32_t radar_id() const { return radar_id_; }
   /// True if a scan arrived within the radar's deadline.
-  [[nodiscard]] bool delivers(std::int64_t now_ns) const { return scans_ > 0 && now_ns - last_ns_ <= deadline_ns_; }
+  [[nodiscard]] bool delivers(std::int64_t now_ns) const { return delivery_.delivers(now_ns); }
 
  private:
   std::uint32_t radar_id_;
-  double expected_rate_hz_;
-  std::int64_t deadline_ns_;
   Config config_;
-  std::int64_t start_ns_;
-  std::int64_t last_ns_ = 0;
-  std::uint64_t scans_ = 0;
+  DeliveryMonitor delivery_;
+  SightMonitor sight_;
+  double speed_mps_ = 0.0;  // of the vehicle; NaN if it is not known
   std::uint64_t lost_scans_ = 0;
   std::uint64_t last_sequence_ = 0;
   double detections_per_scan_ = 0.0;
-  RateWindow rate_;
   RateWindow messages_;
   RateWindow rejected_;
   RateWindow suspect_;
+  RateWindow received_;       // scans
+  RateWindow frozen_;         // scans with the same data as before
+  RateWindow contradicting_;  // scans that contradict the vehicle's motion
   SourceStatistics last_statistics_{};
   bool has_statistics_ = false;
   bool has_estimate_ = false;

@@ -19,10 +19,20 @@ std::size_t slot_of(Event event) {
 std::array<DebounceTimes, kNumberOfEventKinds> FaultMemoryConfig::default_debounce() {
   std::array<DebounceTimes, kNumberOfEventKinds> times{};
   const auto set = [&times](EventKind kind, DebounceTimes value) { times[static_cast<std::size_t>(kind)] = value; };
-  set(kind_of(RadarEvent::kNoData), {.set_s = 0.0, .clear_s = 0.2});
-  set(kind_of(RadarEvent::kRejectedData), {.set_s = 0.5, .clear_s = 2.0});
-  set(kind_of(RadarEvent::kSuspectData), {.set_s = 0.5, .clear_s = 2.0});
-  set(kind_of(RadarEvent::kRateReduced), {.set_s = 0.5, .clear_s = 2.0});
+  set(kind_of(RadarEvent::kNoData), {.set_s = 0.0, .clear_s = 0.3});
+  for (const RadarEvent event : {RadarEvent::kFrozen, RadarEvent::kEgoContradiction}) {
+    set(kind_of(event), {.set_s = 0.2, .clear_s = 2.0});
+  }
+  for (const RadarEvent event :
+       {RadarEvent::kBlind, RadarEvent::kReducedSight, RadarEvent::kDisturbed, RadarEvent::kRejectedData,
+        RadarEvent::kSuspectData, RadarEvent::kRateReduced, RadarEvent::kRateTooHigh, RadarEvent::kDelayed}) {
+    set(kind_of(event), {.set_s = 0.5, .clear_s = 2.0});
+  }
+  for (const PipelineEvent event :
+       {PipelineEvent::kLosing, PipelineEvent::kQueueing, PipelineEvent::kWorkBudget, PipelineEvent::kLate}) {
+    set(kind_of(event), {.set_s = 0.0, .clear_s = 1.0});
+  }
+  set(kind_of(PipelineEvent::kSilent), {.set_s = 0.0, .clear_s = 0.3});
   return times;
 }
 
