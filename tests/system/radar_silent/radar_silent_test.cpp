@@ -54,7 +54,7 @@ std::filesystem::path without_sender(const std::filesystem::path& capture, std::
   return result;
 }
 
-TEST(RadarSilent, IsNotAvailableWithinItsDeadlineAndBackWithItsFirstScan) {
+TEST(RadarSilent, IsNotAvailableWithinItsDeadlineAndBackSoonAfterItsNextScan) {
   auto recordings = harness::simulated_drive(8.0);
   recordings[0] = without_sender(recordings[0], kLastByteOfItsAddress, 4.0, 4.0 + kSilence_s);
   Observer observer("-silent");
@@ -98,7 +98,8 @@ TEST(RadarSilent, IsNotAvailableWithinItsDeadlineAndBackWithItsFirstScan) {
   EXPECT_LE(after_s, kDeadline_s + 0.02 + 0.08);
   ASSERT_NE(cleared_ns, 0) << "it did not become available again";
   EXPECT_GE(cleared_ns, back_ns - 10'000'000);
-  EXPECT_LE(static_cast<double>(cleared_ns - back_ns) * 1e-9, 0.2);
+  // Debounced by debounce.no_data.clear_s of health.toml.
+  EXPECT_LE(static_cast<double>(cleared_ns - back_ns) * 1e-9, 0.4);
   std::printf("NOT_AVAILABLE %.3f s after the last scan (deadline %.2f s), back %.3f s after the next one\n", after_s,
               kDeadline_s, static_cast<double>(cleared_ns - back_ns) * 1e-9);
 
