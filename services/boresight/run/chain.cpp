@@ -76,6 +76,7 @@ void Chain::add_ego(EgoMotion& motion, std::int64_t time_ns) {
   note_measurement(time_ns);
   timed(times_.estimator, [&] { estimator_.add_ego_motion(motion); });
   timed(times_.corrector, [&] { corrector_.add_ego_motion(motion); });
+  timed(times_.health, [&] { health_.observe(motion); });
 }
 
 bool Chain::add_scan(RadarScan& scan, std::int64_t time_ns) {

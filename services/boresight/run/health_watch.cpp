@@ -1,6 +1,7 @@
 #include "services/boresight/run/health_watch.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "interfaces/catalogue/catalogue.hpp"
 
@@ -63,6 +64,10 @@ void HealthWatch::observe(const AlignmentEstimate& estimate) {
   if (estimate.speed_change.time_ns > speed_change_.time_ns) speed_change_ = estimate.speed_change;
 }
 
+void HealthWatch::observe(const EgoMotion& motion) {
+  vehicle_frame_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<float>::quiet_NaN();
+}
+
 void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t own_ns) {
   for (const SourceStatistics& source : sources) {
     if (health::SensorMonitor* const s = sensor(source.source_id)) s->observe(source, own_ns);
@@ -72,7 +77,7 @@ void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t o
 void HealthWatch::judge(std::int64_t own_ns, bool always, const Report& report) {
   HealthResult verdicts;
   verdicts.number_of_sensors = sensors_.size();
-  for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(*faults_, own_ns, {});
+  for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(*faults_, own_ns, vehicle_frame_);
   verdicts.overall = overall_of(verdicts);
   verdicts.load_change = load_change_;
   verdicts.speed_change = speed_change_;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "services/boresight/run/results.hpp"
 #include "services/common/vehicle/vehicle.hpp"
@@ -37,6 +38,7 @@ class HealthWatch {
   /// A scan that arrived at the time of the last advance().
   void observe(const RadarScan& scan);
   void observe(const AlignmentEstimate& estimate);
+  void observe(const EgoMotion& motion);
 
  private:
   [[nodiscard]] health::SensorMonitor* sensor(std::uint32_t radar_id);
@@ -46,6 +48,7 @@ class HealthWatch {
   VehicleConfig vehicle_;
   health::Config config_;
   std::optional<health::FaultMemory> faults_;  // of this drive
+  health::FreezeFrame vehicle_frame_;
   std::vector<health::SensorMonitor> sensors_;
   AlignmentVehicleChange load_change_{}, speed_change_{};  ///< the latest that an estimate reported
   HealthResult reported_;

@@ -20,9 +20,9 @@ struct Config {
   double clear_ratio = 0.9;          ///< within: the interval's upper end is below this share of the tolerance
   double inhibit_rad = 0.1274;       ///< 7.3°: beyond it the sensor is NOT_AVAILABLE
   double reference_range_m = 100.0;  ///< range at which the lateral displacement is stated
-  DeliveryConfig delivery;
-  SightConfig sight;
-  FaultMemoryConfig faults;
+  DeliveryConfig delivery = {};
+  SightConfig sight = {};
+  FaultMemoryConfig faults = {};
 };
 
 }  // namespace boresight::health

@@ -99,7 +99,7 @@ TEST(RadarSilent, IsNotAvailableWithinItsDeadlineAndBackSoonAfterItsNextScan) {
   ASSERT_NE(cleared_ns, 0) << "it did not become available again";
   EXPECT_GE(cleared_ns, back_ns - 10'000'000);
   // Debounced by debounce.no_data.clear_s of health.toml.
-  EXPECT_LE(static_cast<double>(cleared_ns - back_ns) * 1e-9, 0.4);
+  EXPECT_LE(static_cast<double>(cleared_ns - back_ns) * 1e-9, 1.3);
   std::printf("NOT_AVAILABLE %.3f s after the last scan (deadline %.2f s), back %.3f s after the next one\n", after_s,
               kDeadline_s, static_cast<double>(cleared_ns - back_ns) * 1e-9);
 

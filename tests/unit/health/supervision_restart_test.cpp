@@ -100,7 +100,7 @@ TEST_F(RestartTest, ASilentRadarIsNeverAvailableAfterARestart) {
   run(5.0);
   expect(2, kNotAvailable, kNoData);
   silent_radar_ = 0;
-  run(0.5);
+  run(1.5);
   expect(2, kAvailable, kNormal);
 }
 

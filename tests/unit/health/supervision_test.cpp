@@ -48,7 +48,7 @@ TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableSoonAf
   silent_radar_ = 0;
   run(0.1);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable) << "debounced";
-  run(0.2);
+  run(1.1);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailable);
   EXPECT_NEAR(radar(2).rate_hz, 20.0, 1.0);
 }

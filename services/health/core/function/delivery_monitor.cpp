@@ -16,6 +16,7 @@ DeliveryMonitor::DeliveryMonitor(const DeliveryConfig& config, double expected_r
     : config_(config),
       expected_rate_hz_(expected_rate_hz),
       deadline_ns_(nanoseconds(deadline_s)),
+      silence_limit_ns_(deadline_ns_),
       budget_ns_(nanoseconds(config.latency_budget_s + latency_s)),
       start_ns_(start_ns),
       rate_(std::max(window_s, 10.0 / expected_rate_hz)),
@@ -34,20 +35,23 @@ void DeliveryMonitor::observe(std::int64_t age_ns, std::int64_t now_ns) {
   last_ns_ = now_ns;
   rate_.add(now_ns);
   arrivals_.add(now_ns);
+  silence_limit_ns_ = silence_limit_ns(now_ns);
   if (age_ns < 0) return;
   dated_.add(now_ns);
   if (age_ns > budget_ns_) delayed_.add(now_ns);
 }
 
-TestResult DeliveryMonitor::silent(std::int64_t now_ns) {
+std::int64_t DeliveryMonitor::silence_limit_ns(std::int64_t now_ns) {
+  const std::uint64_t arrivals = arrivals_.sum(now_ns);
+  if (!is_intermittent(now_ns) || arrivals == 0) return deadline_ns_;
+  // Scans that arrive by chance with a mean interval: a pause of n intervals has the probability e^-n.
+  const double interval_s = config_.pauses_window_s / static_cast<double>(arrivals);
+  return std::max(deadline_ns_, nanoseconds(config_.silence_scans * interval_s));
+}
+
+TestResult DeliveryMonitor::silent(std::int64_t now_ns) const {
   if (scans_ == 0) return now_ns - start_ns_ > deadline_ns_ ? TestResult::kFailed : TestResult::kNone;
-  std::int64_t limit_ns = deadline_ns_;
-  if (is_intermittent(now_ns)) {
-    // Scans that arrive by chance with a mean interval: a pause of n intervals has the probability e^-n.
-    const double arrivals = std::max<double>(1.0, static_cast<double>(arrivals_.sum(now_ns)));
-    limit_ns = std::max(limit_ns, nanoseconds(config_.silence_scans * config_.pauses_window_s / arrivals));
-  }
-  return result_of(now_ns - last_ns_ > limit_ns);
+  return result_of(now_ns - last_ns_ > silence_limit_ns_);
 }
 
 TestResult DeliveryMonitor::rate_reduced(std::int64_t now_ns) {

@@ -31,7 +31,7 @@ class DeliveryMonitor {
   /// True if a scan arrived within the radar's deadline.
   [[nodiscard]] bool delivers(std::int64_t now_ns) const { return scans_ > 0 && now_ns - last_ns_ <= deadline_ns_; }
   /// Nothing for longer than the deadline; for an intermittent radar, than its pauses explain.
-  [[nodiscard]] TestResult silent(std::int64_t now_ns);
+  [[nodiscard]] TestResult silent(std::int64_t now_ns) const;
   [[nodiscard]] TestResult rate_reduced(std::int64_t now_ns);
   [[nodiscard]] TestResult rate_too_high(std::int64_t now_ns);
   [[nodiscard]] TestResult delayed(std::int64_t now_ns);
@@ -44,11 +44,13 @@ class DeliveryMonitor {
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
 
  private:
+  [[nodiscard]] std::int64_t silence_limit_ns(std::int64_t now_ns);
   [[nodiscard]] bool is_intermittent(std::int64_t now_ns) { return pauses_.sum(now_ns) > config_.most_pauses; }
 
   DeliveryConfig config_;
   double expected_rate_hz_;
   std::int64_t deadline_ns_;
+  std::int64_t silence_limit_ns_;  // since the last scan
   std::int64_t budget_ns_;
   std::int64_t start_ns_;
   std::int64_t last_ns_ = 0;
