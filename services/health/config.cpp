@@ -53,7 +53,7 @@ void read_faults(config::Reader& root, FaultMemoryConfig& c, FaultStoreConfig& s
 
 void read_pipeline(config::Reader& root, PipelineConfig& c) {
   config::Reader table = root.table("pipeline");
-  c.window_s = table.number("window_s", {0.1, 0.4}, c.window_s);  // a longer window would delay the verdict
+  c.window_s = table.number("window_s", {0.1, 0.35}, c.window_s);  // a longer window would delay the verdict
   c.latency_budget_s = table.number("latency_budget_s", {0.001, 1.0}, c.latency_budget_s);
   c.max_late_ratio = table.number("max_late_ratio", {0.0, 0.9}, c.max_late_ratio);
   c.queueing_budget_s = table.number("queueing_budget_s", {0.001, 1.0}, c.queueing_budget_s);

@@ -30,7 +30,7 @@ std::string conditions_of(const HealthReport& report) {
 
 }  // namespace
 
-std::string trouble_codes(const PipelineHealth& pipeline) {
+std::string pipeline_trouble_codes(const PipelineHealth& pipeline) {
   std::string codes;
   for (std::size_t i = 0; i < kNumberOfPipelineEvents; ++i) {
     if ((pipeline.failed_events >> i & 1U) == 0) continue;
@@ -44,7 +44,7 @@ diagnostics::SystemHealth to_system_health(const HealthReport& report, const Veh
                                            std::int64_t time_ns) {
   diagnostics::PipelineHealth pipeline;
   pipeline.data_qualifier(to_qualifier(report.pipeline.data_qualifier));
-  pipeline.trouble_codes(trouble_codes(report.pipeline));
+  pipeline.trouble_codes(pipeline_trouble_codes(report.pipeline));
   pipeline.lost_scans(report.pipeline.lost_scans);
   pipeline.budget_hits(report.pipeline.budget_hits);
   pipeline.queueing_max_ms(report.pipeline.queueing_max_ms);

@@ -15,6 +15,6 @@ namespace boresight::dds {
                                                          std::int64_t time_ns);
 
 /// Trouble codes of the failed tests of the pipeline, separated by blanks; empty without a failure.
-[[nodiscard]] std::string trouble_codes(const PipelineHealth& pipeline);
+[[nodiscard]] std::string pipeline_trouble_codes(const PipelineHealth& pipeline);
 
 }  // namespace boresight::dds

@@ -160,7 +160,7 @@ DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleCo
   status.message_(std::string(name_of(report.overall)));
   const auto event = [](std::string words) { return words.empty() ? std::string("none") : words; };
   const PipelineHealth& pipeline = report.pipeline;
-  const std::string codes = trouble_codes(pipeline);
+  const std::string codes = pipeline_trouble_codes(pipeline);
   add_value(status, "pipeline", std::string(name_of(pipeline.data_qualifier)));
   add_value(status, "pipeline trouble codes", codes.empty() ? "none" : codes);
   add_value(status, "lost scans", fmt::format("{}", pipeline.lost_scans));

@@ -70,7 +70,7 @@ TEST(HealthConfig, DebounceTimesOfEachEventAreReadIntoTheirPlace) {
 TEST(HealthConfig, NonsenseIsRefusedWithWhatIsAllowed) {
   EXPECT_THAT(problems_of("[debounce]\nno_dat = {set_s = 1.0}"), testing::HasSubstr("no_data"));
   EXPECT_THAT(problems_of("[debounce]\nno_data = {set_s = 11.0}"), testing::HasSubstr("10"));
-  EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.5"), testing::HasSubstr("0.1 … 0.4")) << "too late a verdict";
+  EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.4"), testing::HasSubstr("0.1 … 0.35")) << "too late a verdict";
   EXPECT_THAT(problems_of("[fault_memory]\nageing_cycles = 0"), testing::HasSubstr("1 … 255"));
   EXPECT_THAT(problems_of("[fault_memory]\noperation_cycle = \"drive\""), testing::HasSubstr("start"));
 }

@@ -195,7 +195,7 @@ TEST_F(PipelineMonitorTest, OneHeartbeatWithLongQueueingIsNoFailure) {
 
 TEST_F(PipelineMonitorTest, WorkBudgetsReduceItWithinHalfASecond) {
   expect_event(
-      kWorkBudget, kAvailableReduced, [&] { at_budget_every_ = 2; }, [&] { at_budget_every_ = 0; });
+      kWorkBudget, kAvailableReduced, [&] { at_budget_every_ = 4; }, [&] { at_budget_every_ = 0; });
 }
 
 TEST_F(PipelineMonitorTest, LateTrackListsReduceItWithinHalfASecond) {

@@ -25,7 +25,7 @@ std::array<DebounceTimes, kNumberOfEventKinds> FaultMemoryConfig::default_deboun
   set(kind_of(RadarEvent::kRateReduced), {.set_s = 0.5, .clear_s = 2.0});
   set(EventKind::kPipelineLosing, {.set_s = 0.0, .clear_s = 1.0});
   set(EventKind::kPipelineQueueing, {.set_s = 0.15, .clear_s = 1.0});
-  set(EventKind::kPipelineWorkBudget, {.set_s = 0.1, .clear_s = 1.0});
+  set(EventKind::kPipelineWorkBudget, {.set_s = 0.0, .clear_s = 1.0});
   set(EventKind::kPipelineLate, {.set_s = 0.0, .clear_s = 1.0});
   set(EventKind::kPipelineSilent, {.set_s = 0.04, .clear_s = 0.2});
   return times;
