@@ -51,6 +51,16 @@ void read_faults(config::Reader& root, FaultMemoryConfig& c, FaultStoreConfig& s
   }
 }
 
+void read_pipeline(config::Reader& root, PipelineConfig& c) {
+  config::Reader table = root.table("pipeline");
+  c.window_s = table.number("window_s", {0.1, 0.35}, c.window_s);  // a longer window would delay the verdict
+  c.latency_budget_s = table.number("latency_budget_s", {0.001, 1.0}, c.latency_budget_s);
+  c.max_late_ratio = table.number("max_late_ratio", {0.0, 0.9}, c.max_late_ratio);
+  c.queueing_budget_s = table.number("queueing_budget_s", {0.001, 1.0}, c.queueing_budget_s);
+  c.max_lost_ratio = table.number("max_lost_ratio", {0.0, 0.9}, c.max_lost_ratio);
+  c.max_work_budget_ratio = table.number("max_work_budget_ratio", {0.0, 0.9}, c.max_work_budget_ratio);
+}
+
 }  // namespace
 
 FileConfig read_config(config::Reader root) {
@@ -89,6 +99,7 @@ FileConfig read_config(config::Reader root) {
   s.clear_ratio = misalignment.number("clear_ratio", {0.1, 0.99}, s.clear_ratio);
   s.inhibit_rad = misalignment.angle_deg("inhibit_deg", {config::kMaxTolerance_deg, 30.0}, s.inhibit_rad);
   s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
+  read_pipeline(root, s.pipeline);
   read_faults(root, s.faults, c.fault_store);
   config::Reader dds = root.table("dds");
   c.dds.enabled = dds.boolean("enabled", c.dds.enabled);

@@ -27,8 +27,9 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
   node.on<EgoMotion>([&](const EgoMotion& m) { supervision.observe(m); });
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });
-  node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  // Before the scans: after a pause of this service, scans without their track lists would look like a silent pipeline.
   node.on<TrackList>([&](const TrackList& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
 
   const auto sent = std::make_unique<HealthReport>();
   const auto current = std::make_unique<HealthReport>();

@@ -32,17 +32,20 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
   ingest::BusSink sink(node);
   ingest::Gateway gateway(vehicle, sink, mappings);
   ingest::Backlog backlog;
+  const bool is_live = config.input != ingest::Input::kReplay;
   ingest::Links links(node, {.on_frame =
                                  [&](const recording::Frame& frame, const ingest::FrameStamp& stamp) {
                                    const std::int64_t now_ns = runtime::monotonic_now_ns();
                                    backlog.frame_taken(now_ns - stamp.received_ns);
+                                   // The stamps of a replay are those of the recording.
+                                   if (is_live) node.count_queueing(now_ns - stamp.received_ns);
                                    sink.frame_begins(now_ns);
                                    gateway.take(frame, stamp);
                                  },
                              .on_fault = [&](Fault fault, std::string_view what) { node.fault(fault, what); },
                              .on_end = [&] { gateway.finish(); },
                              .on_network_up = [&] { gateway.network_is_up(runtime::monotonic_now_ns()); }});
-  if (config.input == ingest::Input::kReplay) {
+  if (!is_live) {
     links.add(std::make_unique<ingest::TunnelLink>(config.tunnel_path, links.events()));
   } else {
     links.add_live(vehicle);

@@ -14,7 +14,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
     const tracking::StepResult result = tracker->step(scan);
     if (result.out_of_order) node.fault(Fault::kTimeJump, "scan older than the tracks");
     if (result.restarted) node.fault(Fault::kTimeJump, "measurement time jumped: tracks dropped");
-    if (result.budget_reached) node.fault(Fault::kCapacity, "search for associations ended at its work budget");
+    if (result.budget_reached) node.fault(Fault::kWorkBudget, "search for associations ended at its work budget");
     if (result.dropped_detections > 0) {
       node.fault(Fault::kCapacity, "more detections in a scan than the tracker has room for",
                  result.dropped_detections);

@@ -34,7 +34,7 @@ struct DiagnosticsOptions {
   double seconds = 0.0;
 };
 
-/// Writes lines from two threads of the middleware, one after the other. An error is kept for the main thread.
+/// Writes lines from the threads of the middleware, one after the other. An error is kept for the main thread.
 class LinePrinter {
  public:
   explicit LinePrinter(const std::string& file) : output_(file) {}
@@ -88,11 +88,30 @@ class StateChanges {
   std::map<Radar, Verdict> verdicts_;
 };
 
+/// The same for the whole system of each vehicle.
+class SystemChanges {
+ public:
+  bool observe(const diagnostics::SystemHealth& s) {
+    const Verdict verdict(s.overall(), s.pipeline().data_qualifier(), s.pipeline().trouble_codes(), s.services());
+    const auto [known, is_first] = verdicts_.try_emplace(s.vehicle_name(), verdict);
+    const bool changed = is_first || known->second != verdict;
+    known->second = verdict;
+    return changed;
+  }
+
+ private:
+  /// Overall, qualifier and trouble codes of the pipeline, conditions of the services.
+  using Verdict = std::tuple<diagnostics::DataQualifier, diagnostics::DataQualifier, std::string, std::string>;
+  std::map<std::string, Verdict> verdicts_;
+};
+
 int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {
   const bool is_json = !options.json.empty();
   LinePrinter printer(is_json ? options.json : "-");
   StateChanges changes;
+  SystemChanges system_changes;
   dds::DiagnosticsReader::OnSensorHealth on_sensor_health;
+  dds::DiagnosticsReader::OnSystemHealth on_system_health;
   dds::DiagnosticsReader::OnDiagnosticArray on_array;
   if (options.array) {
     on_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
@@ -103,8 +122,13 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
       if (!changes.observe(sensor) && !options.all) return;
       printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor) + "\n");
     };
+    on_system_health = [&](const diagnostics::SystemHealth& system) {
+      if (!system_changes.observe(system) && !options.all) return;
+      printer.print(is_json ? diagnostics_text::to_json(system) : diagnostics_text::to_line(system) + "\n");
+    };
   }
-  std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array);
+  std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array,
+                                               on_system_health);
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -131,7 +155,8 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
 
 void add_diagnostics_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "diagnostics", "Prints what the health service publishes over DDS: a line when a radar's state changes.");
+      "diagnostics",
+      "Prints what the health service publishes over DDS: a line when the state of a radar or of the system changes.");
   auto options = std::make_shared<DiagnosticsOptions>();
   constexpr std::uint32_t kHighestDomain = 232;
   command->add_option("--domain", options->dds.domain, "DDS domain")
@@ -143,8 +168,9 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
       ->add_option("--interface", options->dds.interfaces,
                    "IPv4 address of a network interface to use; repeatable; all interfaces if not given")
       ->type_name("ADDRESS");
-  command->add_flag("--array", options->array,
-                    "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health");
+  command->add_flag(
+      "--array", options->array,
+      "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");
   command->add_flag("--all", options->all, "Prints every sample, not only changed states");
   add_json_option(*command, options->json,
                   "A line of JSON for each sample; without FILE, or with \"-\": to standard output");

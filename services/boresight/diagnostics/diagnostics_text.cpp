@@ -1,5 +1,6 @@
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <string_view>
 
@@ -31,6 +32,13 @@ std::string_view word(diagnostics::ExtendedQualifier qualifier) {
 
 std::string clock_time(std::int64_t seconds, std::int64_t nanoseconds) {
   return fmt::format("{:%H:%M:%S}.{}", fmt::localtime(static_cast<std::time_t>(seconds)), nanoseconds / 100'000'000);
+}
+
+constexpr std::size_t kNameColumns = 13;
+
+std::string clock_time_of(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  return clock_time(time_ns / kSecond_ns, time_ns % kSecond_ns);
 }
 
 std::string_view level_word(std::uint8_t level) {
@@ -89,12 +97,9 @@ json::Value object_of(const diagnostic_msgs::msg::dds_::DiagnosticStatus_& statu
 }  // namespace
 
 std::string to_line(const diagnostics::SensorHealth& s) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
-  constexpr std::size_t kNameColumns = 13;
-  std::string line =
-      fmt::format("{} {}{} {}  {:.1f} Hz", clock_time(s.time_ns() / kSecond_ns, s.time_ns() % kSecond_ns),
-                  text::padded(text::printable(s.radar_name()), kNameColumns), word(s.data_qualifier()),
-                  word(s.extended_qualifier()), s.rate_hz());
+  std::string line = fmt::format("{} {}{} {}  {:.1f} Hz", clock_time_of(s.time_ns()),
+                                 text::padded(text::printable(s.radar_name()), kNameColumns), word(s.data_qualifier()),
+                                 word(s.extended_qualifier()), s.rate_hz());
   line += axis_text("yaw", s.yaw()) + axis_text("pitch", s.pitch()) + axis_text("roll", s.roll());
   if (s.yaw().observable()) {
     line += fmt::format("  lateral displacement {} at {:.0f} m",
@@ -154,6 +159,45 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   object["e2e_repeated"] = s.e2e_repeated();
   object["e2e_wrong"] = s.e2e_wrong();
   object["conditions"] = words_of_conditions(s.conditions());
+  return json::line(object);
+}
+
+std::string to_line(const diagnostics::SystemHealth& s) {
+  const diagnostics::PipelineHealth& pipeline = s.pipeline();
+  std::string line =
+      fmt::format("{} {}{}  pipeline {}", clock_time_of(s.time_ns()), text::padded("system", kNameColumns),
+                  word(s.overall()), word(pipeline.data_qualifier()));
+  if (pipeline.lost_scans() != 0) line += fmt::format("  {} scans lost", pipeline.lost_scans());
+  if (pipeline.budget_hits() != 0) line += fmt::format("  {} scans at a work budget", pipeline.budget_hits());
+  line += fmt::format("  queueing {}  latency p99 {}", text::fixed(pipeline.queueing_max_ms(), 1, " ms"),
+                      text::fixed(pipeline.latency_p99_ms(), 1, " ms"));
+  const std::string services = text::printable(s.services());
+  for (std::size_t begin = 0; begin < services.size();) {
+    const std::size_t end = std::min(services.find(' ', begin), services.size());
+    const std::string service = services.substr(begin, end - begin);
+    if (!service.ends_with(":alive")) line += "  " + service;
+    begin = end + 1;
+  }
+  if (!pipeline.trouble_codes().empty()) line += "  " + text::printable(pipeline.trouble_codes());
+  return line;
+}
+
+std::string to_json(const diagnostics::SystemHealth& s) {
+  json::Value object;
+  object["vehicle"] = s.vehicle_name();
+  object["time_ns"] = s.time_ns();
+  object["overall"] = word(s.overall());
+  json::Value& pipeline = object["pipeline"];
+  pipeline["data_qualifier"] = word(s.pipeline().data_qualifier());
+  pipeline["trouble_codes"] = s.pipeline().trouble_codes();
+  pipeline["lost_scans"] = s.pipeline().lost_scans();
+  pipeline["budget_hits"] = s.pipeline().budget_hits();
+  pipeline["queueing_max_ms"] = json::shortest(s.pipeline().queueing_max_ms());
+  pipeline["latency_p99_ms"] = json::shortest(s.pipeline().latency_p99_ms());
+  object["services"] = s.services();
+  object["latency_p50_ms"] = json::shortest(s.latency_p50_ms());
+  object["latency_max_ms"] = json::shortest(s.latency_max_ms());
+  object["stored_trouble_codes"] = s.stored_trouble_codes();
   return json::line(object);
 }
 

@@ -5,6 +5,7 @@
 
 #include "generated/diagnostic_array.h"
 #include "generated/sensor_health.h"
+#include "generated/system_health.h"
 
 namespace boresight::diagnostics_text {
 
@@ -12,6 +13,10 @@ namespace boresight::diagnostics_text {
 [[nodiscard]] std::string to_line(const diagnostics::SensorHealth& sensor);
 /// A line with line feed: config/schema/json.md.
 [[nodiscard]] std::string to_json(const diagnostics::SensorHealth& sensor);
+/// "12:34:56.7 system  AVAILABLE_REDUCED  pipeline AVAILABLE_REDUCED  12 scans lost  …"
+[[nodiscard]] std::string to_line(const diagnostics::SystemHealth& system);
+/// A line with line feed: config/schema/json.md.
+[[nodiscard]] std::string to_json(const diagnostics::SystemHealth& system);
 /// One line for each status that is not OK, or one line that all are OK.
 [[nodiscard]] std::string to_lines(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);
 [[nodiscard]] std::string to_json(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);

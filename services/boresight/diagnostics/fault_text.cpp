@@ -156,9 +156,9 @@ std::string dtc_table() {
     std::string code = health::code_text(static_cast<std::uint32_t>(type.code) << 8U | type.failure_type);
     if (type.subject != health::Subject::kVehicle) code.replace(3, 2, "nn");
     const bool has_effect = type.effect != DataQualifier::kAvailable;
-    table +=
-        fmt::format("| `{}` | `{}` | {} | {} | {} | {} |\n", code, type.name, type.meaning,
-                    has_effect ? name_of(type.effect) : "none", has_effect ? name_of(type.reason) : "", type.remedy);
+    table += fmt::format("| `{}` | `{}` | {} | {} | {} | {} |\n", code, type.name, type.meaning,
+                         has_effect ? name_of(type.effect) : "none",
+                         type.reason != ExtendedQualifier::kNormal ? name_of(type.reason) : "", type.remedy);
   }
   return table;
 }

@@ -20,6 +20,7 @@
 #include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/node_impl.hpp"
+#include "services/common/runtime/queueing.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/common/runtime/systemd.hpp"
 
@@ -205,6 +206,10 @@ void Node::count_input(std::int64_t processing_ns) {
   impl_->count(processing_ns);
 }
 
+void Node::count_queueing(std::int64_t waited_ns) {
+  impl_->count_queueing(waited_ns);
+}
+
 SourceStatistics& Node::source_statistics(std::uint32_t source_id) {
   auto& sources = impl_->status.sources;
   const auto found = std::find_if(sources.begin(), sources.end(), [source_id](const SourceStatistics& s) {
@@ -252,6 +257,7 @@ void Node::Impl::handle(Input& input, const MessageHeader& message, std::uint64_
   event_begin_ns = monotonic_now_ns();
   const std::uint64_t outputs_before = status.outputs;
   is_output_due = input.newest.has_value();
+  if (input.newest) count_queueing(queueing_ns(message, event_begin_ns));
   {
     const CountAllocations counting(input.handled >= kWarmUpInputs);
     input.handler(&message, dropped);

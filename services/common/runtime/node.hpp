@@ -71,6 +71,9 @@ class Node {
   void fault(Fault fault, std::string_view what, std::uint64_t count = 1);
   /// For inputs other than those of on(): counts one input and its processing time.
   void count_input(std::int64_t processing_ns);
+  /// For inputs other than those of on_newest(): how long one waited before it was taken, in ns. The heartbeat states
+  /// the longest time.
+  void count_queueing(std::int64_t waited_ns);
   /// The gateway's per-radar statistics; the entry is created on first use.
   [[nodiscard]] SourceStatistics& source_statistics(std::uint32_t source_id);
   /// For a handler of on_newest() that rightly publishes nothing, for example because the radar is unknown. Without

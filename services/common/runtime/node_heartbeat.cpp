@@ -24,6 +24,10 @@ void Node::Impl::count_latency(std::int64_t latency_ns) {
   latency_max_ns = std::max(latency_max_ns, latency_ns);
 }
 
+void Node::Impl::count_queueing(std::int64_t waited_ns) {
+  queueing_max_ns = std::max(queueing_max_ns, waited_ns);
+}
+
 /// A service that starts or stops has no data flow, and its watchdog is stroked.
 void Node::Impl::stroke_watchdog() {
   watch.begin_look(monotonic_now_ns());
@@ -80,9 +84,10 @@ void Node::Impl::heartbeat() {
   status.latency_mean_us =
       latency_count == 0 ? 0.0F : static_cast<float>(latency_sum_ns * 1e-3 / static_cast<double>(latency_count));
   status.latency_max_us = static_cast<float>(static_cast<double>(latency_max_ns) * 1e-3);
+  status.queueing_max_us = static_cast<float>(static_cast<double>(queueing_max_ns) * 1e-3);
   processing_sum_ns = latency_sum_ns = 0.0;
   processing_count = latency_count = 0;
-  processing_max_ns = latency_max_ns = 0;
+  processing_max_ns = latency_max_ns = queueing_max_ns = 0;
   const Origin origin{.source_id = static_cast<std::uint32_t>(self),
                       .measurement_time_ns = monotonic_now_ns(),
                       .time_source = TimeSource::kUserArrival,

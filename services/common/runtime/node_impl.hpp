@@ -93,6 +93,7 @@ struct Node::Impl {
   [[nodiscard]] int poll_descriptors(std::int64_t timeout_ns);
   void count(std::int64_t processing_ns);
   void count_latency(std::int64_t latency_ns);
+  void count_queueing(std::int64_t waited_ns);
   void heartbeat();
   void stroke_watchdog();
   void look_at_inputs();
@@ -127,6 +128,7 @@ struct Node::Impl {
   double latency_sum_ns = 0.0;
   std::uint32_t latency_count = 0;
   std::int64_t latency_max_ns = 0;
+  std::int64_t queueing_max_ns = 0;
   std::array<std::uint64_t, kNumberOfFaults> logged_faults{};
   std::uint64_t logged_allocations = 0;
 };

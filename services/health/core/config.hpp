@@ -7,6 +7,16 @@
 
 namespace boresight::health {
 
+/// Tests of the way of the scans from arrival to track list.
+struct PipelineConfig {
+  double window_s = 0.3;               ///< time window of the figures (choice: verdict within 0.5 s)
+  double latency_budget_s = 0.05;      ///< from arrival to track list (choice: one cycle; measured p99: 4 ms)
+  double max_late_ratio = 0.1;         ///< of the track lists, beyond the latency budget (choice)
+  double queueing_budget_s = 0.025;    ///< that a scan may wait for a stage (choice: half a cycle)
+  double max_lost_ratio = 0.07;        ///< of the scans, lost or dropped between the stages (choice)
+  double max_work_budget_ratio = 0.2;  ///< of the scans, at a work budget (choice)
+};
+
 struct Config {
   double window_s = 2.0;            ///< time window of rates, losses and latencies
   double max_rejected_ratio = 0.2;  ///< a larger share of rejected frames is INVALID_DATA
@@ -20,6 +30,7 @@ struct Config {
   double clear_ratio = 0.9;          ///< within: the interval's upper end is below this share of the tolerance
   double inhibit_rad = 0.1274;       ///< 7.3°: beyond it the sensor is NOT_AVAILABLE
   double reference_range_m = 100.0;  ///< range at which the lateral displacement is stated
+  PipelineConfig pipeline = {};
   DeliveryConfig delivery = {};
   SightConfig sight = {};
   FaultMemoryConfig faults = {};

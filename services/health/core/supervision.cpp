@@ -27,6 +27,16 @@ std::int64_t output_deadline_ns(Service service) {
   }
 }
 
+/// Longest time without a track list while scans arrive: the topic's deadline, but no radar must be that slow.
+std::int64_t silence_ns_of(const VehicleConfig& vehicle) {
+  std::int64_t shortest_ns = std::numeric_limits<std::int64_t>::max();
+  for (const RadarConfig& radar : vehicle.radars) {
+    shortest_ns = std::min(shortest_ns, static_cast<std::int64_t>(radar.deadline_s * 1e9));
+  }
+  const std::int64_t deadline_ns = catalogue::topic(TopicId::kTrackList).deadline_ns;
+  return vehicle.radars.empty() ? deadline_ns : std::max(deadline_ns, shortest_ns);
+}
+
 DataQualifier overall_of(const HealthReport& report) {
   const auto sensors_end = report.sensors.begin() + report.number_of_sensors;
   const auto services_end = report.services.begin() + report.number_of_services;
@@ -39,10 +49,13 @@ DataQualifier overall_of(const HealthReport& report) {
                               s.service != static_cast<std::uint32_t>(Service::kHealth);
     return carries_data && (s.condition == ServiceCondition::kSilent || s.condition == ServiceCondition::kUnknown);
   });
-  if (chain_is_broken || std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kNotAvailable))) {
+  const DataQualifier pipeline = report.pipeline.data_qualifier;
+  if (chain_is_broken || pipeline == DataQualifier::kNotAvailable ||
+      std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kNotAvailable))) {
     return DataQualifier::kNotAvailable;
   }
-  const bool all_well = std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kAvailable)) &&
+  const bool all_well = pipeline == DataQualifier::kAvailable &&
+                        std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kAvailable)) &&
                         std::all_of(report.services.begin(), services_end,
                                     [](const ServiceHealth& s) { return s.condition == ServiceCondition::kAlive; });
   return all_well ? DataQualifier::kAvailable : DataQualifier::kAvailableReduced;
@@ -51,7 +64,10 @@ DataQualifier overall_of(const HealthReport& report) {
 }  // namespace
 
 Supervision::Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns)
-    : config_(config), faults_(vehicle, config.faults), window_begin_ns_(start_ns) {
+    : config_(config),
+      faults_(vehicle, config.faults),
+      pipeline_(config, silence_ns_of(vehicle), start_ns),
+      window_begin_ns_(start_ns) {
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   vehicle_frame_.speed_mps = vehicle_frame_.rate_hz = vehicle_frame_.detections_per_scan = kUnknown;
   vehicle_frame_.lateral_displacement_m = vehicle_frame_.reference_range_m = kUnknown;
@@ -84,7 +100,10 @@ SensorMonitor* Supervision::sensor(std::uint32_t radar_id) {
 }
 
 void Supervision::observe(const RadarScan& scan, std::int64_t now_ns) {
-  if (SensorMonitor* const s = sensor(scan.header.source_id)) s->observe(scan, now_ns);
+  SensorMonitor* const s = sensor(scan.header.source_id);
+  if (s == nullptr) return;
+  s->observe(scan, now_ns);
+  pipeline_.scan_arrived(now_ns);
 }
 
 void Supervision::observe(const EgoMotion& motion) {
@@ -101,6 +120,7 @@ void Supervision::observe(const AlignmentEstimate& estimate) {
 }
 
 void Supervision::observe(const TrackList& tracks, std::int64_t now_ns) {
+  pipeline_.observe(tracks, now_ns);
   if (static_cast<double>(now_ns - window_begin_ns_) * 1e-9 > config_.window_s) {
     complete_latencies_ = latencies_;
     latencies_ = {};
@@ -115,6 +135,7 @@ void Supervision::observe(const ServiceStatus& status, std::int64_t now_ns) {
   const std::uint32_t index = status.header.source_id;
   if (index >= services_.size()) return;
   services_[index].observe(status, now_ns);
+  pipeline_.observe(status, now_ns);
   if (static_cast<Service>(index) != Service::kIngestGateway) return;
   for (const SourceStatistics& source : status.sources) {
     if (SensorMonitor* const s = sensor(source.source_id)) s->observe(source, now_ns);
@@ -138,7 +159,6 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns, std::int64_t epo
   report_change(EventKind::kLoadChange, load_change_, now_ns);
   report_change(EventKind::kSpeedSignalChange, speed_change_, now_ns);
   out.reserved = {};
-  out.pipeline = {};
   out.load_change = load_change_;
   out.speed_change = speed_change_;
   out.sensors = {};
@@ -160,6 +180,7 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns, std::int64_t epo
     out.services[i] = services_[i].judge(input_flows, now_ns);
     services_[i].report(out.services[i], faults_, now_ns, vehicle_frame_);
   }
+  out.pipeline = pipeline_.judge(faults_, now_ns, vehicle_frame_);
   const LatencyHistogram& latencies = complete_latencies_.total() > 0 ? complete_latencies_ : latencies_;
   out.latency_p50_ms = static_cast<float>(latencies.percentile_us(0.5) * 1e-3);
   out.latency_max_ms = static_cast<float>(latencies.max_us() * 1e-3);
@@ -169,6 +190,8 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns, std::int64_t epo
 
 bool verdicts_differ(const HealthReport& a, const HealthReport& b) {
   if (a.overall != b.overall || a.number_of_sensors != b.number_of_sensors) return true;
+  if (a.pipeline.data_qualifier != b.pipeline.data_qualifier) return true;
+  if (a.pipeline.failed_events != b.pipeline.failed_events) return true;
   if (a.load_change.time_ns != b.load_change.time_ns || a.speed_change.time_ns != b.speed_change.time_ns) return true;
   for (std::size_t i = 0; i < a.number_of_sensors; ++i) {
     const SensorHealth &x = a.sensors[i], &y = b.sensors[i];

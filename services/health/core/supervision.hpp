@@ -1,4 +1,4 @@
-// Health of the whole system: every radar, every service, and the latency from reception to track list.
+// Health of the whole system: every radar, every service, and the way of the scans from reception to track list.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/health/core/config.hpp"
 #include "services/health/core/faults/fault_memory.hpp"
+#include "services/health/core/pipeline_monitor.hpp"
 #include "services/health/core/sensor_monitor.hpp"
 #include "services/health/core/service_monitor.hpp"
 
@@ -52,6 +53,7 @@ class Supervision {
   FreezeFrame vehicle_frame_;  // of the present time, without a radar's values
   std::vector<SensorMonitor> sensors_;
   std::vector<ServiceMonitor> services_;
+  PipelineMonitor pipeline_;
   AlignmentVehicleChange load_change_{};   // the latest that an estimate reported
   AlignmentVehicleChange speed_change_{};  //
   LatencyHistogram latencies_;             // of the current window

@@ -17,6 +17,7 @@ struct Config {
 };
 
 inline constexpr const char* kSensorHealthTopic = "boresight/sensor_health";
+inline constexpr const char* kSystemHealthTopic = "boresight/system_health";
 inline constexpr const char* kDiagnosticsTopic = "rt/diagnostics";
 inline constexpr const char* kFaultRecordTopic = "boresight/fault_memory";
 inline constexpr const char* kFaultMemoryStateTopic = "boresight/fault_memory_state";

@@ -6,6 +6,7 @@
 
 #include "generated/diagnostic_arrayPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
+#include "generated/system_healthPubSubTypes.h"
 #include "services/health/dds/guarded_type.hpp"
 #include "services/health/dds/participant.hpp"
 
@@ -14,6 +15,7 @@ namespace boresight::dds {
 namespace {
 
 constexpr int kReadLatestOfEachRadar = 1;
+constexpr int kReadLatestOfEachVehicle = 1;
 constexpr int kReadArrays = 10;
 
 template <typename Sample>
@@ -37,11 +39,19 @@ class Listener : public eprosima::fastdds::dds::DataReaderListener {
 
 class DiagnosticsReader::Readers {
  public:
-  Readers(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array)
-      : sensor_health_(on_sensor_health), diagnostic_array_(on_diagnostic_array), participant_(config, "boresight") {
+  Readers(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array,
+          OnSystemHealth on_system_health)
+      : sensor_health_(on_sensor_health),
+        system_health_(on_system_health),
+        diagnostic_array_(on_diagnostic_array),
+        participant_(config, "boresight") {
     if (on_sensor_health) {
       participant_.reader(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(), kReadLatestOfEachRadar,
                           &sensor_health_);
+    }
+    if (on_system_health) {
+      participant_.reader(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>(), kReadLatestOfEachVehicle,
+                          &system_health_);
     }
     if (on_diagnostic_array) {
       participant_.reader(kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(),
@@ -51,13 +61,15 @@ class DiagnosticsReader::Readers {
 
  private:
   Listener<diagnostics::SensorHealth> sensor_health_;
+  Listener<diagnostics::SystemHealth> system_health_;
   Listener<diagnostic_msgs::msg::dds_::DiagnosticArray_> diagnostic_array_;
   Participant participant_;  // last member: its destructor stops the listeners first
 };
 
 DiagnosticsReader::DiagnosticsReader(const Config& config, OnSensorHealth on_sensor_health,
-                                     OnDiagnosticArray on_diagnostic_array)
-    : readers_(std::make_unique<Readers>(config, std::move(on_sensor_health), std::move(on_diagnostic_array))) {}
+                                     OnDiagnosticArray on_diagnostic_array, OnSystemHealth on_system_health)
+    : readers_(std::make_unique<Readers>(config, std::move(on_sensor_health), std::move(on_diagnostic_array),
+                                         std::move(on_system_health))) {}
 
 DiagnosticsReader::~DiagnosticsReader() = default;
 

@@ -1,4 +1,4 @@
-// Reader of a diagnosis tool: delivers samples of both topics to callbacks.
+// Reader of a diagnosis tool: delivers samples of the topics to callbacks.
 #pragma once
 
 #include <functional>
@@ -6,6 +6,7 @@
 
 #include "generated/diagnostic_array.h"
 #include "generated/sensor_health.h"
+#include "generated/system_health.h"
 #include "services/health/dds/config.hpp"
 
 namespace boresight::dds {
@@ -14,9 +15,11 @@ namespace boresight::dds {
 class DiagnosticsReader {
  public:
   using OnSensorHealth = std::function<void(const diagnostics::SensorHealth&)>;
+  using OnSystemHealth = std::function<void(const diagnostics::SystemHealth&)>;
   using OnDiagnosticArray = std::function<void(const diagnostic_msgs::msg::dds_::DiagnosticArray_&)>;
   /// Joins the domain; throws std::runtime_error if that is impossible.
-  DiagnosticsReader(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array);
+  DiagnosticsReader(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array,
+                    OnSystemHealth on_system_health = {});
 
   ~DiagnosticsReader();
 

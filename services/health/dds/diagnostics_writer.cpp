@@ -6,13 +6,16 @@
 
 #include "generated/diagnostic_arrayPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
+#include "generated/system_healthPubSubTypes.h"
 #include "services/health/dds/guarded_type.hpp"
+#include "services/health/dds/system_health.hpp"
 #include "services/health/dds/to_dds.hpp"
 
 namespace boresight::dds {
 
 namespace {
 constexpr int kWrittenLatestOfEachRadar = 1;
+constexpr int kWrittenLatestOfTheVehicle = 1;
 constexpr int kWrittenArrays = 1;
 }  // namespace
 
@@ -20,6 +23,8 @@ DiagnosticsWriter::DiagnosticsWriter(Participant& participant, const VehicleConf
     : vehicle_(vehicle),
       sensor_health_(participant.writer(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(),
                                         kWrittenLatestOfEachRadar)),
+      system_health_(participant.writer(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>(),
+                                        kWrittenLatestOfTheVehicle)),
       diagnostics_(participant.writer(
           kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(), kWrittenArrays)) {}
 
@@ -30,6 +35,8 @@ bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) 
     diagnostics::SensorHealth sample = to_sensor_health(report, i, vehicle_, time_ns);
     taken = sensor_health_.write(&sample) && taken;
   }
+  diagnostics::SystemHealth system = to_system_health(report, vehicle_, time_ns);
+  taken = system_health_.write(&system) && taken;
   auto array = to_diagnostic_array(report, vehicle_, time_ns);
   return diagnostics_.write(&array) && taken;
 }

@@ -1,4 +1,5 @@
-// Health reports out by DDS: each radar on boresight/sensor_health, everything on rt/diagnostics.
+// Health reports out by DDS: each radar on boresight/sensor_health, the whole on boresight/system_health, everything on
+// rt/diagnostics.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@ class DiagnosticsWriter {
  private:
   VehicleConfig vehicle_;
   eprosima::fastdds::dds::DataWriter& sensor_health_;
+  eprosima::fastdds::dds::DataWriter& system_health_;
   eprosima::fastdds::dds::DataWriter& diagnostics_;
 };
 

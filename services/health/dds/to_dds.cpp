@@ -11,6 +11,7 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 #include "services/health/core/faults/event.hpp"
+#include "services/health/dds/system_health.hpp"
 
 namespace boresight::dds {
 
@@ -158,6 +159,14 @@ DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleCo
   status.hardware_id_(vehicle.name);
   status.message_(std::string(name_of(report.overall)));
   const auto event = [](std::string words) { return words.empty() ? std::string("none") : words; };
+  const PipelineHealth& pipeline = report.pipeline;
+  const std::string codes = pipeline_trouble_codes(pipeline);
+  add_value(status, "pipeline", std::string(name_of(pipeline.data_qualifier)));
+  add_value(status, "pipeline trouble codes", codes.empty() ? "none" : codes);
+  add_value(status, "lost scans", fmt::format("{}", pipeline.lost_scans));
+  add_value(status, "scans at a work budget", fmt::format("{}", pipeline.budget_hits));
+  add_value(status, "longest queueing", fmt::format("{:.3f} ms", pipeline.queueing_max_ms));
+  add_value(status, "latency p99", fmt::format("{:.3f} ms", pipeline.latency_p99_ms));
   add_value(status, "load change", event(alignment_words::load_change_sentence(report.load_change)));
   add_value(status, "speed signal", event(alignment_words::speed_change_sentence(report.speed_change)));
   add_value(status, "stored trouble codes", fmt::format("{}", report.stored_events));

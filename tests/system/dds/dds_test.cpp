@@ -11,6 +11,7 @@
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/health/dds/diagnostics_reader.hpp"
 #include "services/health/dds/diagnostics_writer.hpp"
+#include "services/health/dds/system_health.hpp"
 #include "services/health/dds/to_dds.hpp"
 #include "tests/system/harness/child.hpp"
 
@@ -40,6 +41,16 @@ HealthReport report() {
   r.number_of_sensors = 2;
   r.number_of_services = 6;
   r.latency_p50_ms = 0.5F;
+  r.latency_max_ms = 7.5F;
+  r.stored_events = 4;
+  r.pipeline = {.data_qualifier = DataQualifier::kAvailableReduced,
+                .reserved = {},
+                .failed_events = 1u << static_cast<unsigned>(PipelineEvent::kLosing) |
+                                 1u << static_cast<unsigned>(PipelineEvent::kLate),
+                .lost_scans = 12,
+                .budget_hits = 3,
+                .queueing_max_ms = 31.5F,
+                .latency_p99_ms = 62.5F};
   for (std::uint32_t i = 0; i < 6; ++i) {
     r.services[i].service = i;
     r.services[i].condition = ServiceCondition::kAlive;
@@ -79,6 +90,7 @@ struct Received {
   std::map<std::uint32_t, diagnostics::SensorHealth> sensors;
   std::size_t samples = 0;
   diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
+  diagnostics::SystemHealth system;
 
   DiagnosticsReader::OnSensorHealth on_sensor = [this](const diagnostics::SensorHealth& s) {
     const std::lock_guard lock(mutex);
@@ -89,9 +101,13 @@ struct Received {
     const std::lock_guard lock(mutex);
     array = a;
   };
+  DiagnosticsReader::OnSystemHealth on_system = [this](const diagnostics::SystemHealth& s) {
+    const std::lock_guard lock(mutex);
+    system = s;
+  };
   bool is_complete() {
     const std::lock_guard lock(mutex);
-    return sensors.size() == 2 && !array.status_().empty();
+    return sensors.size() == 2 && !array.status_().empty() && !system.vehicle_name().empty();
   }
 };
 
@@ -104,7 +120,7 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   ASSERT_TRUE(writer.write(report(), kTime_ns));
   // The reader starts after the writing.
   Received received;
-  const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
+  const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array, received.on_system);
   ASSERT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); })) << "no sample arrived";
   const std::lock_guard lock(received.mutex);
   EXPECT_EQ(received.samples, 2u) << "one instance a radar, the latest only";
@@ -137,6 +153,22 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(s.e2e_wrong(), 7u);
   EXPECT_EQ(s.conditions(), source_condition::kSupply | source_condition::kWithoutEgoMotion);
   EXPECT_EQ(s.lateral_displacement_m(), 4.36F);
+  const diagnostics::SystemHealth& system = received.system;
+  EXPECT_EQ(system.vehicle_name(), "test car");
+  EXPECT_EQ(system.time_ns(), kTime_ns);
+  EXPECT_EQ(system.overall(), diagnostics::AVAILABLE_REDUCED);
+  EXPECT_EQ(system.pipeline().data_qualifier(), diagnostics::AVAILABLE_REDUCED);
+  EXPECT_EQ(system.pipeline().trouble_codes(), "U1B00-82 U1B00-33");
+  EXPECT_EQ(system.pipeline().lost_scans(), 12u);
+  EXPECT_EQ(system.pipeline().budget_hits(), 3u);
+  EXPECT_EQ(system.pipeline().queueing_max_ms(), 31.5F);
+  EXPECT_EQ(system.pipeline().latency_p99_ms(), 62.5F);
+  EXPECT_EQ(system.services(),
+            "ingest_gateway:alive alignment_estimator:alive detection_corrector:alive ghost_filter:alive "
+            "tracker:silent health:alive");
+  EXPECT_EQ(system.latency_p50_ms(), 0.5F);
+  EXPECT_EQ(system.latency_max_ms(), 7.5F);
+  EXPECT_EQ(system.stored_trouble_codes(), 4u);
   ASSERT_EQ(received.array.status_().size(), 1u + 2u + 6u);
   const auto& statuses = received.array.status_();
   EXPECT_EQ(received.array.header_().stamp_().sec_(), 1'700'000'000);
@@ -149,6 +181,11 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
       << statuses[2].message_();
   EXPECT_EQ(statuses[2].level_(), 1);
   std::map<std::string, std::string> values;
+  for (const auto& value : statuses[0].values_()) values[value.key_()] = value.value_();
+  EXPECT_EQ(values["pipeline"], "AVAILABLE_REDUCED");
+  EXPECT_EQ(values["pipeline trouble codes"], "U1B00-82 U1B00-33");
+  EXPECT_EQ(values["lost scans"], "12");
+  EXPECT_EQ(values["longest queueing"], "31.500 ms");
   for (const auto& value : statuses[2].values_()) values[value.key_()] = value.value_();
   EXPECT_EQ(values["reported by the sensor"], "supply, without ego motion");
   EXPECT_EQ(values["scans lost before the gateway"], "23456789012");
@@ -162,7 +199,7 @@ TEST(Dds, LeavesNothingInSharedMemory) {
     Participant participant(kConfig, "test");
     DiagnosticsWriter writer(participant, vehicle());
     Received received;
-    const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
+    const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array, received.on_system);
     ASSERT_TRUE(writer.write(report(), kTime_ns));
     EXPECT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); }));
     EXPECT_TRUE(fs::is_empty("/dev/shm")) << "UDP only";
@@ -176,12 +213,12 @@ TEST(Dds, OtherDomainsReceiveNothing) {
   Received received;
   Config other = kConfig;
   other.domain = 78;
-  const DiagnosticsReader reader(other, received.on_sensor, received.on_array);
+  const DiagnosticsReader reader(other, received.on_sensor, received.on_array, received.on_system);
   ASSERT_TRUE(writer.write(report(), kTime_ns));
   EXPECT_FALSE(harness::eventually(1.0, [&] { return received.is_complete(); }));
 }
 
-TEST(Dds, AnotherImplementationReadsBothTopics) {
+TEST(Dds, AnotherImplementationReadsTheTopics) {
   if (!fs::exists(BORESIGHT_PEER)) GTEST_SKIP() << "skipped: Cyclone DDS is not installed";
   Participant participant(kConfig, "test");
   DiagnosticsWriter writer(participant, vehicle());
@@ -195,6 +232,7 @@ TEST(Dds, AnotherImplementationReadsBothTopics) {
   EXPECT_NE(output.find("status 1 boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos)
       << output;
   EXPECT_NE(output.find("status 2 boresight/service/tracker: silent"), std::string::npos) << output;
+  EXPECT_NE(output.find("system test car 1 pipeline 1 U1B00-82 U1B00-33 lost 12"), std::string::npos) << output;
   EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436 suspect 34 conditions 72"), std::string::npos) << output;
 }
 
@@ -213,6 +251,14 @@ TEST(DiagnosticsText, StatesAWrongInputInOneSentence) {
   EXPECT_NE(line.find("AVAILABLE_REDUCED WRONG_INPUT"), std::string::npos) << line;
   EXPECT_NE(line.find("speed signal in km/h (3.6 times too large)"), std::string::npos) << line;
   EXPECT_NE(line.find("load changed the vehicle's pitch by +0.78° (nose up)"), std::string::npos) << line;
+}
+
+TEST(DiagnosticsText, StatesTheSystemInOneLine) {
+  const std::string line = diagnostics_text::to_line(to_system_health(report(), vehicle(), kTime_ns));
+  EXPECT_NE(line.find(" system       AVAILABLE_REDUCED  pipeline AVAILABLE_REDUCED  12 scans lost  3 scans at a work "
+                      "budget  queueing 31.5 ms  latency p99 62.5 ms  tracker:silent  U1B00-82 U1B00-33"),
+            std::string::npos)
+      << line;
 }
 
 TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {

@@ -162,6 +162,8 @@ int Observer::observe(const std::string& name, double pause_s) {
   });
   node.on<HealthReport>([&](const HealthReport& report) {
     note(TopicId::kHealthReport, report.header, [&](Sample& s) {
+      s.overall = report.overall;
+      s.pipeline = report.pipeline;
       for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_sensors, kMaxRadars); ++i) {
         const SensorHealth& sensor = report.sensors[i];
         if (sensor.radar_id >= s.sensor.size()) continue;

@@ -30,6 +30,8 @@ struct Sample {
   ServiceStatus status;                        ///< of ServiceStatus only
   std::array<std::uint32_t, 5> sensor;         ///< HealthReport: data qualifier of radar 1…4 (index = id)
   std::array<std::uint32_t, 5> sensor_reason;  ///< extended qualifier
+  DataQualifier overall;                       ///< HealthReport, as is the next
+  PipelineHealth pipeline;
   std::array<ServiceCondition, catalogue::kNumberOfSupervisedServices> services;
   std::array<std::uint64_t, catalogue::kNumberOfSupervisedServices> dropped_inputs;  ///< HealthReport, as is the next
   std::array<float, catalogue::kNumberOfSupervisedServices> latency_max_us;

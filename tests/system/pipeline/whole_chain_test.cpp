@@ -112,6 +112,16 @@ TEST_F(WholeChain, EveryScanEndsInATrackList) {
   EXPECT_TRUE(std::any_of(lists.begin(), lists.end(), [](const Sample* s) { return s->confirmed_tracks > 0; }));
 }
 
+TEST_F(WholeChain, ThePipelineIsAvailableFromTheFirstTracksToTheEnd) {
+  const auto reports = observer_->of(TopicId::kHealthReport);
+  const auto is_available = [](const Sample* s) { return s->pipeline.data_qualifier == DataQualifier::kAvailable; };
+  const auto first = std::find_if(reports.begin(), reports.end(), is_available);
+  ASSERT_NE(first, reports.end());
+  EXPECT_LT((*first)->received_ns, observer_->of(TopicId::kTrackList).front()->received_ns + 100'000'000);
+  EXPECT_TRUE(std::all_of(first, reports.end(), is_available)) << "no flip";
+  for (const Sample* report : reports) EXPECT_EQ(report->pipeline.failed_events, 0u);
+}
+
 TEST_F(WholeChain, StampsOfTheStagesGrow) {
   const auto lists = observer_->of(TopicId::kTrackList);
   ASSERT_FALSE(lists.empty());

@@ -151,6 +151,25 @@ TEST_F(SlowStage, HeartbeatsStateTheLatencyFromArrivalOfEveryStage) {
   }
 }
 
+TEST_F(SlowStage, HeartbeatsStateTheLongestTimeThatAScanWaitedForTheStage) {
+  const std::array<std::pair<Service, TopicId>, 3> stages = {{{Service::kDetectionCorrector, TopicId::kCorrectedScan},
+                                                              {Service::kGhostFilter, TopicId::kClassifiedScan},
+                                                              {Service::kTracker, TopicId::kTrackList}}};
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    double stamped_max_us = 0.0;
+    for (const Sample* sample : observer_->of(stages[i].second)) {
+      const auto& stamps = sample->header.stages;
+      stamped_max_us = std::max(stamped_max_us, 1e-3 * static_cast<double>(stamps[i + 1].begin_ns - stamps[i].end_ns));
+    }
+    double reported_max_us = 0.0;
+    for (const Sample* sample : observer_->of(TopicId::kServiceStatus)) {
+      if (sample->header.source_id == static_cast<std::uint32_t>(stages[i].first))
+        reported_max_us = std::max<double>(reported_max_us, sample->status.queueing_max_us);
+    }
+    EXPECT_NEAR(reported_max_us, stamped_max_us, 1e-6 * stamped_max_us) << name_of(stages[i].first);
+  }
+}
+
 TEST_F(SlowStage, HealthReportsTheDroppedScansAndTheLatencyOfTheStage) {
   constexpr auto kGhostFilter = static_cast<std::size_t>(Service::kGhostFilter);
   std::uint64_t dropped = 0;

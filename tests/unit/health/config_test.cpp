@@ -48,6 +48,12 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(s.clear_ratio, expected.clear_ratio);
   EXPECT_NEAR(s.inhibit_rad, expected.inhibit_rad, 1e-4);
   EXPECT_EQ(s.reference_range_m, expected.reference_range_m);
+  EXPECT_EQ(s.pipeline.window_s, expected.pipeline.window_s);
+  EXPECT_EQ(s.pipeline.latency_budget_s, expected.pipeline.latency_budget_s);
+  EXPECT_EQ(s.pipeline.max_late_ratio, expected.pipeline.max_late_ratio);
+  EXPECT_EQ(s.pipeline.queueing_budget_s, expected.pipeline.queueing_budget_s);
+  EXPECT_EQ(s.pipeline.max_lost_ratio, expected.pipeline.max_lost_ratio);
+  EXPECT_EQ(s.pipeline.max_work_budget_ratio, expected.pipeline.max_work_budget_ratio);
   EXPECT_EQ(s.faults.cycles.confirmation_cycles, expected.faults.cycles.confirmation_cycles);
   EXPECT_EQ(s.faults.cycles.healing_cycles, expected.faults.cycles.healing_cycles);
   EXPECT_EQ(s.faults.cycles.ageing_cycles, expected.faults.cycles.ageing_cycles);
@@ -79,6 +85,7 @@ TEST(HealthConfig, DebounceTimesOfEachEventAreReadIntoTheirPlace) {
 TEST(HealthConfig, NonsenseIsRefusedWithWhatIsAllowed) {
   EXPECT_THAT(problems_of("[debounce]\nno_dat = {set_s = 1.0}"), testing::HasSubstr("no_data"));
   EXPECT_THAT(problems_of("[debounce]\nno_data = {set_s = 11.0}"), testing::HasSubstr("10"));
+  EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.4"), testing::HasSubstr("0.1 … 0.35")) << "too late a verdict";
   EXPECT_THAT(problems_of("[fault_memory]\nageing_cycles = 0"), testing::HasSubstr("1 … 255"));
   EXPECT_THAT(problems_of("[fault_memory]\noperation_cycle = \"drive\""), testing::HasSubstr("start"));
 }

@@ -76,6 +76,7 @@ class SupervisionTest : public testing::Test {
         for (std::size_t s = 0; s < 5; ++s) {
           if (!idle_[s]) ++status_[s].outputs;
         }
+        if (!idle_[static_cast<std::size_t>(Service::kTracker)]) supervision_.observe(*tracks_, now_);
       }
       if (step_ % 20 == 0) {
         for (auto& estimate : estimate_) {
@@ -100,6 +101,7 @@ class SupervisionTest : public testing::Test {
   std::array<bool, 6> idle_{};
   std::array<std::uint64_t, 3> sequence_{};
   std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
   std::unique_ptr<HealthReport> report_ = std::make_unique<HealthReport>();
   std::uint32_t silent_radar_ = 0;
   int scan_every_ = 5;

@@ -229,6 +229,34 @@ TEST_F(SupervisionTest, AServiceWithoutHeartbeatIsSilentAndBreaksTheChain) {
   EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
 }
 
+TEST_F(SupervisionTest, APipelineThatDeliversNoTracksMakesTheWholeNotAvailable) {
+  run(3.0);
+  const HealthReport before = *report_;
+  idle_[static_cast<std::size_t>(Service::kTracker)] = true;
+  run(0.2);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailable);
+  run(0.25);
+  EXPECT_EQ(report_->pipeline.data_qualifier, DataQualifier::kNotAvailable);
+  EXPECT_EQ(report_->overall, DataQualifier::kNotAvailable);
+  HealthReport after = before;
+  after.pipeline = report_->pipeline;
+  EXPECT_TRUE(verdicts_differ(before, after)) << "sent at once";
+  after.pipeline = before.pipeline;
+  after.pipeline.lost_scans += 1;
+  EXPECT_FALSE(verdicts_differ(before, after)) << "a number only";
+}
+
+TEST_F(SupervisionTest, AReducedPipelineReducesTheWhole) {
+  run(3.0);
+  status(Service::kTracker).faults[static_cast<std::size_t>(Fault::kWorkBudget)] = 1000;
+  run(0.4);
+  EXPECT_EQ(report_->pipeline.data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive) << "a work budget loses nothing";
+  run(3.0);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailable);
+}
+
 TEST_F(SupervisionTest, DataAreAvailableWithoutTheEstimator) {
   run(3.0);
   mute_[static_cast<std::size_t>(Service::kAlignmentEstimator)] = true;

@@ -201,6 +201,19 @@ inline std::vector<std::string> sensor_healths() {
   return {diagnostics_text::to_json(sensor), diagnostics_text::to_json(unknown)};
 }
 
+inline std::vector<std::string> system_healths() {
+  diagnostics::SystemHealth system;
+  system.vehicle_name(kName);
+  system.services("tracker:silent");
+  diagnostics::SystemHealth unknown;
+  const float nothing = std::nanf("");
+  unknown.pipeline().queueing_max_ms(nothing);
+  unknown.pipeline().latency_p99_ms(nothing);
+  unknown.latency_p50_ms(nothing);
+  unknown.latency_max_ms(nothing);
+  return {diagnostics_text::to_json(system), diagnostics_text::to_json(unknown)};
+}
+
 inline std::vector<std::string> fault_records() {
   diagnostics::FaultRecord record;
   diagnostics::FaultRecord unknown;
@@ -241,6 +254,7 @@ inline std::map<std::string, std::vector<Value>> written() {
       {"boresight calibrate plate", plates()},
       {"boresight calibrate reflectors", reflector_runs()},
       {"boresight diagnostics", sensor_healths()},
+      {"boresight diagnostics: system", system_healths()},
       {"boresight diagnostics --array", diagnostic_arrays()},
       {"boresight dtc list", fault_records()},
   };

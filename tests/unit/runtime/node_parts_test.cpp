@@ -4,6 +4,7 @@
 
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/node_impl.hpp"
+#include "services/common/runtime/queueing.hpp"
 
 namespace boresight::runtime {
 namespace {
@@ -36,6 +37,16 @@ TEST(GapDetector, DistinguishesSeveralWriters) {
   static_cast<void>(gaps.observe(message(1, 3, 1)));
   EXPECT_EQ(gaps.observe(message(2, 0, 2)), 0u);
   EXPECT_EQ(gaps.observe(message(4, 3, 4)), 2u);
+}
+
+TEST(Queueing, IsTheTimeFromTheEndOfTheStageBeforeToTheBeginOfThisOne) {
+  MessageHeader scan = message(1);
+  EXPECT_EQ(queueing_ns(scan, 900), 0) << "no stage has stamped it";
+  scan.stage(Stage::kIngest) = {100, 150};
+  EXPECT_EQ(queueing_ns(scan, 190), 40);
+  scan.stage(Stage::kCorrector) = {190, 260};
+  EXPECT_EQ(queueing_ns(scan, 900), 640);
+  EXPECT_EQ(queueing_ns(scan, 200), 0) << "a stamp of the future is no waiting";
 }
 
 #ifndef BORESIGHT_SANITIZED

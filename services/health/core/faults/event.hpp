@@ -57,8 +57,8 @@ struct EventType {
   Subject subject;
   std::uint16_t code;         ///< first two bytes of the trouble code, without the subject's number
   std::uint8_t failure_type;  ///< third byte: SAE J2012-DA
-  DataQualifier effect;       ///< on the radar's data; kAvailable: none
-  ExtendedQualifier reason;   ///< of the radar's verdict
+  DataQualifier effect;       ///< on the data of the radar or the pipeline; kAvailable: none
+  ExtendedQualifier reason;   ///< of the radar's verdict; kNormal: none
   std::string_view meaning;
   std::string_view remedy;
 };

@@ -28,11 +28,11 @@ std::array<DebounceTimes, kNumberOfEventKinds> FaultMemoryConfig::default_deboun
         RadarEvent::kSuspectData, RadarEvent::kRateReduced, RadarEvent::kRateTooHigh, RadarEvent::kDelayed}) {
     set(kind_of(event), {.set_s = 0.5, .clear_s = 2.0});
   }
-  for (const PipelineEvent event :
-       {PipelineEvent::kLosing, PipelineEvent::kQueueing, PipelineEvent::kWorkBudget, PipelineEvent::kLate}) {
-    set(kind_of(event), {.set_s = 0.0, .clear_s = 1.0});
-  }
-  set(kind_of(PipelineEvent::kSilent), {.set_s = 0.0, .clear_s = 0.3});
+  set(EventKind::kPipelineLosing, {.set_s = 0.0, .clear_s = 1.0});
+  set(EventKind::kPipelineQueueing, {.set_s = 0.15, .clear_s = 1.0});
+  set(EventKind::kPipelineWorkBudget, {.set_s = 0.0, .clear_s = 1.0});
+  set(EventKind::kPipelineLate, {.set_s = 0.0, .clear_s = 1.0});
+  set(EventKind::kPipelineSilent, {.set_s = 0.04, .clear_s = 0.2});
   return times;
 }
 

@@ -1,5 +1,5 @@
-// A diagnosis tool built on Cyclone DDS: cyclone_peer DOMAIN SECONDS prints every status and every sensor that it
-// receives, one line each, and ends after a diagnostic array and a sensor have come, with 0, or after the time, with 1.
+// A diagnosis tool built on Cyclone DDS: cyclone_peer DOMAIN SECONDS prints every status, sensor and system that it
+// receives, one line each, and ends after a sample of each topic has come, with 0, or after the time, with 1.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +9,7 @@
 
 #include "diagnostic_array.h"
 #include "sensor_health.h"
+#include "system_health.h"
 
 namespace {
 
@@ -49,9 +50,11 @@ int main(int argc, char** argv) {
   const dds_entity_t arrays = reader_of(participant, diagnostic_msgs_msg_dds__DiagnosticArray__desc, "rt/diagnostics");
   const dds_entity_t sensors =
       reader_of(participant, boresight_diagnostics_SensorHealth_desc, "boresight/sensor_health");
-  bool array_came = false, sensor_came = false;
+  const dds_entity_t systems =
+      reader_of(participant, boresight_diagnostics_SystemHealth_desc, "boresight/system_health");
+  bool array_came = false, sensor_came = false, system_came = false;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::atoi(argv[2]));
-  while (std::chrono::steady_clock::now() < end && !(array_came && sensor_came)) {
+  while (std::chrono::steady_clock::now() < end && !(array_came && sensor_came && system_came)) {
     array_came |= take<diagnostic_msgs_msg_dds__DiagnosticArray_>(arrays, [](const auto& array) {
       for (std::uint32_t i = 0; i < array.status_._length; ++i) {
         const auto& status = array.status_._buffer[i];
@@ -64,8 +67,12 @@ int main(int argc, char** argv) {
                   static_cast<int>(s.data_qualifier), static_cast<int>(s.extended_qualifier),
                   static_cast<double>(s.yaw.error_rad), static_cast<unsigned long long>(s.suspect_scans), s.conditions);
     });
+    system_came |= take<boresight_diagnostics_SystemHealth>(systems, [](const auto& s) {
+      std::printf("system %s %d pipeline %d %s lost %u\n", s.vehicle_name, static_cast<int>(s.overall),
+                  static_cast<int>(s.pipeline.data_qualifier), s.pipeline.trouble_codes, s.pipeline.lost_scans);
+    });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   dds_delete(participant);
-  return array_came && sensor_came ? 0 : 1;
+  return array_came && sensor_came && system_came ? 0 : 1;
 }

@@ -6,6 +6,7 @@
 
 #include "generated/fault_memoryPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
+#include "generated/system_healthPubSubTypes.h"
 
 namespace boresight::dds {
 namespace {
@@ -35,6 +36,9 @@ TEST(GuardedType, RefusesDamagedSamplesAndSurvivesThem) {
   diagnostics::SensorHealth sensor;
   sensor.radar_name("front_left");
   EXPECT_GT((refused_of<diagnostics::SensorHealthPubSubType>(sensor, 3000)), 0);
+  diagnostics::SystemHealth system;
+  system.services("tracker:alive");
+  EXPECT_GT((refused_of<diagnostics::SystemHealthPubSubType>(system, 3000)), 0);
   EXPECT_GT((refused_of<diagnostics::FaultMemoryStatePubSubType>(diagnostics::FaultMemoryState(), 3000)), 0);
 }
 
