@@ -123,7 +123,7 @@ struct SensorHealth {
   std::uint64_t e2e_repeated;  ///< messages with the previous counter, dropped
   std::uint64_t e2e_wrong;     ///< messages with a wrong CRC, length, Data ID or sequence, dropped
 };
-static_assert(sizeof(SensorHealth) == 248);
+static_assert(sizeof(SensorHealth) == 256);
 
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< no heartbeat yet
@@ -196,6 +196,6 @@ struct HealthReport {
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + 24 + 32 + kMaxRadars * 248 + kMaxServices * 64);
+static_assert(sizeof(HealthReport) == 104 + 24 + 24 + 32 + kMaxRadars * 256 + kMaxServices * 64);
 
 }  // namespace boresight

@@ -14,6 +14,8 @@ namespace {
 // Cells of the grid on the field of view. Cells at the edge count by their covered part, so few suffice.
 constexpr int kAzimuthCells = 64;
 constexpr int kElevationCells = 16;
+/// Share of a cell: without a mounting error, cells at the edge are covered despite rounding.
+constexpr double kRounding = 1e-9;
 
 double azimuth_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
@@ -36,7 +38,7 @@ struct Span {
   /// Share of a cell of that width around the angle that is inside; a whole circle has no edge.
   [[nodiscard]] double covered(double angle_rad, double width_rad) const {
     if (half_rad > std::numbers::pi - 1e-6) return 1.0;
-    return std::clamp(0.5 + (half_rad - distance(angle_rad)) / width_rad, 0.0, 1.0);
+    return std::clamp(0.5 + (half_rad - distance(angle_rad)) / width_rad + kRounding, 0.0, 1.0);
   }
 };
 
