@@ -13,7 +13,7 @@ struct RenamedKey {
 };
 
 /// The entry counts in every table where `current` is a known key and `former` is none.
-constexpr std::array kRenamedKeys = {
+inline constexpr std::array kRenamedKeys = {
     RenamedKey{"knock", "step_change"},            // filter of services/alignment_estimator.toml, radars of scenarios
     RenamedKey{"flank_low_m", "side_low_m"},       // body of scenarios
     RenamedKey{"confidence_sigma", "confidence"},  // misalignment of services/health.toml: a probability now
@@ -26,7 +26,7 @@ struct MovedKey {
   std::string_view current;  ///< where it is now
 };
 
-constexpr std::array kMovedKeys = {
+inline constexpr std::array kMovedKeys = {
     MovedKey{"inhibit_deg", "clear_ratio", "'limit' of each radar in the vehicle file"},
 };
 
