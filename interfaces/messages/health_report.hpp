@@ -103,14 +103,15 @@ struct SensorHealth {
   float speed_scale_std;
   AlignmentValue range_rate_scale;  ///< AlignmentNuisance
   AlignmentDrift drift;
-  /// Effect of the misalignment (Burza 2025, §6): lateral displacement of a detection at the reference range.
+  /// Consequences of the misalignment (Burza 2025, §6), for detections that the corrector does not correct. Lateral
+  /// displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
-  float lost_coverage_ratio;      ///< share of the region of interest that the turned field of view no longer covers
-  float range_loss_ratio;         ///< of the range at which a target on the axis of interest is detected
-  float velocity_error_mps;       ///< lateral error of an object's velocity vector at the present speed
-  std::uint32_t conditions;       ///< source_condition bits: the sensor's latest self-diagnosis
-  std::uint32_t failed_events;    ///< RadarEvent bits: tests whose last known result is a failure
+  float lost_coverage_ratio;    ///< share of the region of interest that the turned field of view no longer covers
+  float range_loss_ratio;       ///< of the range at which a target in the region's middle is detected; negative: gained
+  float velocity_error_mps;     ///< error of a stationary object's velocity at the present speed; NaN: speed unknown
+  std::uint32_t conditions;     ///< source_condition bits: the sensor's latest self-diagnosis
+  std::uint32_t failed_events;  ///< RadarEvent bits: tests whose last known result is a failure
   std::uint32_t untested_events;  ///< RadarEvent bits: tests without a result that still counts
   std::uint32_t step_changes;     ///< sudden changes of the mounting since the estimator's start
   std::uint64_t scans;

@@ -43,6 +43,10 @@ template <typename Enum, std::size_t N>
                                                        "DELAYED"};
   return detail::word_of(kNames, qualifier);
 }
+[[nodiscard]] constexpr std::string_view name_of(AxisEffect effect) {
+  constexpr std::array<std::string_view, 4> kNames = {"unknown", "compensated", "reduced", "not available"};
+  return detail::word_of(kNames, effect);
+}
 /// The names of source_condition bits, as in "partly blocked, supply"; empty without bits.
 [[nodiscard]] inline std::string words_of_conditions(std::uint32_t bits) {
   constexpr std::array<std::string_view, 7> kNames = {"blocked",     "partly blocked", "defective",         "supply",

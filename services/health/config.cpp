@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "services/common/runtime/config/network_values.hpp"
-#include "services/common/runtime/config/vehicle_file.hpp"
 
 namespace boresight::health {
 
@@ -93,11 +92,10 @@ FileConfig read_config(config::Reader root) {
   g.blind_ratio = sight.number("blind_ratio", {0.01, 0.5}, g.blind_ratio);
   g.unusual_share = sight.number("unusual_share", {0.0, 0.5}, g.unusual_share);
   config::Reader misalignment = root.table("misalignment");
-  s.confidence_sigma = misalignment.number("confidence_sigma", {1.0, 5.0}, s.confidence_sigma);
+  s.confidence = misalignment.number("confidence", {0.9, 0.9999}, s.confidence);
   s.set_s = misalignment.number("set_s", {0.0, 60.0}, s.set_s);
   s.clear_s = misalignment.number("clear_s", {0.0, 600.0}, s.clear_s);
   s.clear_ratio = misalignment.number("clear_ratio", {0.1, 0.99}, s.clear_ratio);
-  s.inhibit_rad = misalignment.angle_deg("inhibit_deg", {config::kMaxTolerance_deg, 30.0}, s.inhibit_rad);
   s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
   read_pipeline(root, s.pipeline);
   read_faults(root, s.faults, c.fault_store);

@@ -29,6 +29,9 @@ std::string_view word(diagnostics::DataQualifier qualifier) {
 std::string_view word(diagnostics::ExtendedQualifier qualifier) {
   return name_of(static_cast<ExtendedQualifier>(qualifier));
 }
+std::string_view word(diagnostics::AxisEffect effect) {
+  return name_of(static_cast<AxisEffect>(effect));
+}
 
 std::string clock_time(std::int64_t seconds, std::int64_t nanoseconds) {
   return fmt::format("{:%H:%M:%S}.{}", fmt::localtime(static_cast<std::time_t>(seconds)), nanoseconds / 100'000'000);
@@ -48,10 +51,10 @@ std::string_view level_word(std::uint8_t level) {
 
 std::string axis_text(std::string_view name, const diagnostics::AxisHealth& axis) {
   if (!axis.observable()) return {};
-  return fmt::format("  {} {} ({} tolerance {:.2f}°)", name,
-                     text::with_std(axis.error_rad() * kDegreesPerRadian, axis.std_rad() * kDegreesPerRadian, "°",
-                                    text::Sign::kAlways),
-                     axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegreesPerRadian);
+  const bool is_beyond_limit = axis.effect() == diagnostics::EFFECT_NOT_AVAILABLE;
+  return fmt::format("  {} {} ({}, {} {:.2f}°)", name, alignment_words::angle_text(axis.error_rad(), axis.std_rad()),
+                     word(axis.effect()), is_beyond_limit || axis.beyond_tolerance() ? "beyond" : "within",
+                     (is_beyond_limit ? axis.limit_rad() : axis.tolerance_rad()) * kDegreesPerRadian);
 }
 
 AlignmentVehicleChange change_of(const diagnostics::VehicleChange& change) {
@@ -67,8 +70,13 @@ json::Value object_of(const diagnostics::AxisHealth& axis) {
   object["error_deg"] = degrees(axis.error_rad());
   object["std_deg"] = degrees(axis.std_rad());
   object["tolerance_deg"] = degrees(axis.tolerance_rad());
+  object["limit_deg"] = degrees(axis.limit_rad());
+  object["beyond_tolerance_probability"] = json::shortest(axis.beyond_tolerance_probability());
+  object["beyond_limit_probability"] = json::shortest(axis.beyond_limit_probability());
   object["observable"] = axis.observable();
   object["beyond_tolerance"] = axis.beyond_tolerance();
+  object["about_vehicle_axis"] = axis.about_vehicle_axis();
+  object["effect"] = word(axis.effect());
   return object;
 }
 
@@ -105,8 +113,14 @@ std::string to_line(const diagnostics::SensorHealth& s) {
     line += fmt::format("  lateral displacement {} at {:.0f} m",
                         text::fixed(s.lateral_displacement_m(), 2, " m", text::Sign::kAlways), s.reference_range_m());
   }
-  // The line has the axes already.
   const bool is_beyond = s.yaw().beyond_tolerance() || s.pitch().beyond_tolerance() || s.roll().beyond_tolerance();
+  if (is_beyond) {
+    line +=
+        fmt::format("  lost coverage {}  loss of range {}  velocity error {}",
+                    text::fixed(s.lost_coverage_ratio() * 100.0, 1, " %"),
+                    text::fixed(s.range_loss_ratio() * 100.0, 1, " %"), text::fixed(s.velocity_error_mps(), 2, " m/s"));
+  }
+  // The line has the axes already.
   if (!is_beyond && !s.explanation().empty()) line += "  " + text::printable(s.explanation());
   for (const std::string& event : {alignment_words::load_change_sentence(change_of(s.load_change())),
                                    alignment_words::speed_change_sentence(change_of(s.speed_change()))}) {
@@ -151,6 +165,9 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   object["speed_change"]["count"] = s.speed_change().count();
   object["lateral_displacement_m"] = json::shortest(s.lateral_displacement_m());
   object["reference_range_m"] = json::shortest(s.reference_range_m());
+  object["lost_coverage_ratio"] = json::shortest(s.lost_coverage_ratio());
+  object["range_loss_ratio"] = json::shortest(s.range_loss_ratio());
+  object["velocity_error_mps"] = json::shortest(s.velocity_error_mps());
   object["scans"] = s.scans();
   object["lost_scans"] = s.lost_scans();
   object["missed_scans"] = s.missed_scans();

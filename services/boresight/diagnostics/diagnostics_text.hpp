@@ -9,7 +9,7 @@
 
 namespace boresight::diagnostics_text {
 
-/// "12:34:56.7 front_right  AVAILABLE_REDUCED MISALIGNED  yaw +2.490 ± 0.021° (beyond tolerance 1.50°)  …"
+/// "12:34:56.7 front_right  AVAILABLE_REDUCED MISALIGNED  yaw +2.490 ± 0.021° (reduced, beyond 1.50°)  …"
 [[nodiscard]] std::string to_line(const diagnostics::SensorHealth& sensor);
 /// A line with line feed: config/schema/json.md.
 [[nodiscard]] std::string to_json(const diagnostics::SensorHealth& sensor);

@@ -60,6 +60,9 @@ std::string frame_lines(std::string_view title, const diagnostics::FreezeFrame& 
     }
     add("lateral displacement",
         fmt::format("{} at {:.0f} m", text::fixed(frame.lateral_displacement_m(), 2, " m"), frame.reference_range_m()));
+    add("lost coverage", text::fixed(frame.lost_coverage_ratio() * 100.0, 1, " %"));
+    add("loss of range", text::fixed(frame.range_loss_ratio() * 100.0, 1, " %"));
+    add("velocity error", text::fixed(frame.velocity_error_mps(), 2, " m/s"));
   }
   add("software", text::printable(frame.software()));
   add("configuration", fmt::format("{:016x}", frame.configuration()));
@@ -76,6 +79,9 @@ json::Value frame_object(const diagnostics::FreezeFrame& frame) {
   object["detections_per_scan"] = json::shortest(frame.detections_per_scan());
   object["lateral_displacement_m"] = json::shortest(frame.lateral_displacement_m());
   object["reference_range_m"] = json::shortest(frame.reference_range_m());
+  object["lost_coverage_ratio"] = json::shortest(frame.lost_coverage_ratio());
+  object["range_loss_ratio"] = json::shortest(frame.range_loss_ratio());
+  object["velocity_error_mps"] = json::shortest(frame.velocity_error_mps());
   for (std::size_t i = 0; i < kEstimateKeys.size(); ++i) {
     object["estimate"][std::string(kEstimateKeys[i])] = json::shortest(frame.estimate()[i]);
   }

@@ -15,9 +15,13 @@ json::Value to_json(const AxisHealth& axis) {
   value["error_rad"] = json::shortest(axis.error_rad);
   value["std_rad"] = json::shortest(axis.std_rad);
   value["tolerance_rad"] = json::shortest(axis.tolerance_rad);
+  value["limit_rad"] = json::shortest(axis.limit_rad);
+  value["beyond_tolerance_probability"] = json::shortest(axis.beyond_tolerance_probability);
+  value["beyond_limit_probability"] = json::shortest(axis.beyond_limit_probability);
   value["observable"] = axis.observable != 0;
   value["beyond_tolerance"] = axis.beyond_tolerance != 0;
   value["about_vehicle_axis"] = axis.about_vehicle_axis != 0;
+  value["effect"] = name_of(axis.effect);
   return value;
 }
 
@@ -66,6 +70,9 @@ json::Value to_json(const SensorHealth& sensor, const VehicleConfig& vehicle, st
   value["drift"] = to_json(sensor.drift, start_ns);
   value["lateral_displacement_m"] = json::shortest(sensor.lateral_displacement_m);
   value["reference_range_m"] = json::shortest(sensor.reference_range_m);
+  value["lost_coverage_ratio"] = json::shortest(sensor.lost_coverage_ratio);
+  value["range_loss_ratio"] = json::shortest(sensor.range_loss_ratio);
+  value["velocity_error_mps"] = json::shortest(sensor.velocity_error_mps);
   value["step_changes"] = sensor.step_changes;
   value["scans"] = sensor.scans;
   value["missed_scans"] = sensor.missed_scans;

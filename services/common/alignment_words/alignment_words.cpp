@@ -195,8 +195,27 @@ std::string beyond_tolerance(const AxisHealth& yaw, const AxisHealth& pitch, con
   std::string text;
   for (const auto& [name, axis] : {std::pair{"yaw", yaw}, std::pair{"pitch", pitch}, std::pair{"roll", roll}}) {
     if (axis.beyond_tolerance == 0) continue;
-    append(text, fmt::format("{} {}, beyond the tolerance of {}", name, angle_text(axis.error_rad, axis.std_rad),
-                             tolerance_text(axis.tolerance_rad)));
+    const bool is_beyond_limit = axis.effect == AxisEffect::kNotAvailable;
+    append(text, fmt::format("{} {}, {}: beyond {}", name, angle_text(axis.error_rad, axis.std_rad),
+                             name_of(is_beyond_limit ? AxisEffect::kNotAvailable : AxisEffect::kReduced),
+                             tolerance_text(is_beyond_limit ? axis.limit_rad : axis.tolerance_rad)));
+  }
+  return text;
+}
+
+std::string consequences(const SensorHealth& sensor) {
+  constexpr float kWorthNaming_ratio = 0.005F;  // rounds to 1 %
+  constexpr float kWorthNaming_mps = 0.05F;     // rounds to 0.1 m/s
+  std::string text = fmt::format("{} at {:.0f} m", text::fixed(std::abs(sensor.lateral_displacement_m), 1, " m"),
+                                 sensor.reference_range_m);
+  if (sensor.lost_coverage_ratio >= kWorthNaming_ratio) {
+    text += fmt::format(", {:.0f} % of the view lost", 100.0F * sensor.lost_coverage_ratio);
+  }
+  if (sensor.range_loss_ratio >= kWorthNaming_ratio) {
+    text += fmt::format(", {:.0f} % of the range lost", 100.0F * sensor.range_loss_ratio);
+  }
+  if (sensor.velocity_error_mps >= kWorthNaming_mps) {
+    text += fmt::format(", velocities wrong by {:.1f} m/s", sensor.velocity_error_mps);
   }
   return text;
 }
@@ -204,7 +223,9 @@ std::string beyond_tolerance(const AxisHealth& yaw, const AxisHealth& pitch, con
 std::string explanation_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
   std::string text =
       sentence_of({sensor.finding, sensor.finding_value, sensor.finding_radar}, sensor.radar_id, vehicle);
-  append(text, beyond_tolerance(sensor.yaw, sensor.pitch, sensor.roll));
+  const std::string axes = beyond_tolerance(sensor.yaw, sensor.pitch, sensor.roll);
+  append(text, axes);
+  if (!axes.empty()) append(text, consequences(sensor));
   append(text, drift_sentence(sensor.drift));
   if (text.empty()) text = words_of(sensor.reason);
   return text;

@@ -47,10 +47,13 @@ struct Finding {
 /// "yaw drifts by +0.131 ± 0.012°/min" with the axes whose rate exceeds twice its σ; empty if no drift is reported.
 [[nodiscard]] std::string drift_sentence(const AlignmentDrift& drift);
 
-/// The axes beyond their tolerance: "roll +2.10 ± 0.21°, beyond the tolerance of 1.5°"; empty if none is.
+/// The axes beyond their tolerance with their effect: "yaw +2.490 ± 0.021°, reduced: beyond 1.5°"; empty if none is.
 [[nodiscard]] std::string beyond_tolerance(const AxisHealth& yaw, const AxisHealth& pitch, const AxisHealth& roll);
-/// The whole message of a radar's verdict behind its qualifiers: wrong input, axes beyond tolerance, drift, changes of
-/// the vehicle, or why the estimate is not converged; empty if there is nothing to say.
+/// Consequences of the mounting error: "4.4 m at 100 m, 3 % of the view lost, 1 % of the range lost, velocities wrong
+/// by 0.9 m/s". Except for the displacement, those that round to zero are not included.
+[[nodiscard]] std::string consequences(const SensorHealth& sensor);
+/// The whole message of a radar's verdict behind its qualifiers: wrong input, axes beyond tolerance with their
+/// consequences, drift, changes of the vehicle, or why the estimate is not converged; empty if there is nothing to say.
 [[nodiscard]] std::string explanation_of(const SensorHealth& sensor, const VehicleConfig& vehicle);
 
 }  // namespace boresight::alignment_words

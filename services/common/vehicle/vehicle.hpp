@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,22 @@ struct FieldOfView {
   double range_max_m = 300.0;
 };
 
+/// Main lobe of the antenna, transmission and reception alike, around boresight: full widths between the directions of
+/// half the power, one way.
+struct AntennaLobe {
+  double azimuth_width_rad;
+  double elevation_width_rad;
+};
+
+/// The directions from the radar, in vehicle axes, in which its data are needed; the part outside of its nominal field
+/// of view does not count. By default the whole view is needed.
+struct RegionOfInterest {
+  double azimuth_min_rad = -std::numbers::pi;
+  double azimuth_max_rad = std::numbers::pi;  ///< up to 2π, for a region across the rear
+  double elevation_min_rad = -std::numbers::pi / 2.0;
+  double elevation_max_rad = std::numbers::pi / 2.0;
+};
+
 /// Standard deviations to use if the sensor states none.
 struct SensorNoise {
   double range_std_m = 0.2;
@@ -35,12 +52,14 @@ struct SensorNoise {
   double range_rate_std_mps = 0.1;
 };
 
-/// Largest misalignment of an axis of a sensor that is not degraded.
+/// Largest misalignment of each axis of a sensor that is not degraded, or that can be used at all.
 struct AlignmentTolerance {
   double yaw_rad = 0.02618;  // 1.5°: the alignment error criterion of field service manuals
   double pitch_rad = 0.02618;
   double roll_rad = 0.05236;
 };
+/// Limit of use per tolerance where the vehicle file states no limit (choice).
+inline constexpr double kLimitPerTolerance = 2.0;
 
 enum class LinkKind : std::uint8_t {
   kCan,     ///< a CAN bus: SocketCAN interface, or bus name of a recording
@@ -93,7 +112,15 @@ struct RadarConfig {
   MountingPose mounting_pose;
   FieldOfView field_of_view;
   SensorNoise noise;
+  /// By default as wide as the field of view (choice: as the simulator's antenna).
+  AntennaLobe antenna{.azimuth_width_rad = field_of_view.azimuth_max_rad - field_of_view.azimuth_min_rad,
+                      .elevation_width_rad = field_of_view.elevation_max_rad - field_of_view.elevation_min_rad};
+  RegionOfInterest region_of_interest;
   AlignmentTolerance tolerance;
+  /// Limit of use: beyond it the data are not available; larger than the tolerance.
+  AlignmentTolerance limit{.yaw_rad = kLimitPerTolerance * tolerance.yaw_rad,
+                           .pitch_rad = kLimitPerTolerance * tolerance.pitch_rad,
+                           .roll_rad = kLimitPerTolerance * tolerance.roll_rad};
   /// Radar profile whose weights of evidence the ghost filter uses: a name in config/radar_profiles, or a file.
   std::string statistics = "series_77ghz";
   double cycle_time_s = 0.05;

@@ -23,12 +23,11 @@ struct Config {
   double max_suspect_ratio = 0.1;   ///< a larger share of scans of doubtful integrity is INVALID_DATA
   double restart_memory_s = 3.0;    ///< time for which a service counts as restarted
   double start_grace_s = 5.0;       ///< time for the services to start, before one without a heartbeat is silent
-  // Misalignment: an axis is beyond tolerance if the lower end of its confidence interval is.
-  double confidence_sigma = 2.33;    ///< one-sided 99 %
+  // Misalignment: an axis is beyond its tolerance or limit if that is probable enough.
+  double confidence = 0.99;          ///< least probability of a verdict
   double set_s = 3.0;                ///< time for which an axis must be beyond its tolerance to be reported
   double clear_s = 5.0;              ///< time for which it must be within to withdraw the report
-  double clear_ratio = 0.9;          ///< within: the interval's upper end is below this share of the tolerance
-  double inhibit_rad = 0.1274;       ///< 7.3°: beyond it the sensor is NOT_AVAILABLE
+  double clear_ratio = 0.9;          ///< withdrawn: below this share of the tolerance or limit
   double reference_range_m = 100.0;  ///< range at which the lateral displacement is stated
   PipelineConfig pipeline = {};
   DeliveryConfig delivery = {};

@@ -16,13 +16,13 @@ double std_of(const std::array<float, 16>& covariance, AlignmentParameter parame
   return std::sqrt(static_cast<double>(covariance[i * kNumberOfAlignmentParameters + i]));
 }
 
-/// The smallest rotation about a vehicle axis (0 x, 1 y, 2 z) that brings one of the sensor's angles to its tolerance.
-double vehicle_tolerance(const RadarConfig& radar, Eigen::Index axis) {
+/// The smallest rotation about a vehicle axis (0 x, 1 y, 2 z) that brings one of the sensor's angles to its tolerance,
+/// or its limit, `t`.
+double about_vehicle(const RadarConfig& radar, Eigen::Index axis, const AlignmentTolerance& t) {
   const MountingPose& pose = radar.mounting_pose;
   // Yaw and roll are the same rotation for a radar that looks straight up or down: only its own axes are tested.
   if (std::abs(std::cos(pose.pitch_rad)) < 0.1) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3d angles = geometry::euler_gradient(pose.yaw_rad, pose.pitch_rad).col(axis).cwiseAbs();
-  const AlignmentTolerance& t = radar.tolerance;
   return (Eigen::Vector3d(t.yaw_rad, t.pitch_rad, t.roll_rad).array() / angles.array().max(1e-3)).minCoeff();
 }
 
@@ -35,7 +35,7 @@ std::int64_t age_at_arrival_ns(const MessageHeader& header) {
 }
 
 /// Detections that the sensor does not forbid to use, and the range that nine tenths of them do not exceed.
-Sight sight_of(const RadarScan& scan) {
+SeenScan seen_in(const RadarScan& scan) {
   constexpr double kShare = 0.9;
   std::array<float, kMaxDetections> ranges;
   std::size_t count = 0;
@@ -50,11 +50,20 @@ Sight sight_of(const RadarScan& scan) {
   return {.detections = static_cast<double>(count), .range_m = static_cast<double>(*nth)};
 }
 
+/// An axis against tolerance and limit, about the sensor and about a vehicle axis (0 x, 1 y, 2 z).
+AngleJudge angle_judge(const RadarConfig& radar, const Config& config, double AlignmentTolerance::*angle,
+                       Eigen::Index axis) {
+  return {{config, radar.tolerance.*angle, radar.limit.*angle},
+          {config, about_vehicle(radar, axis, radar.tolerance), about_vehicle(radar, axis, radar.limit)}};
+}
+
 /// The verdict on an axis as the fault memory has it. If this process has no estimate of the axis, its values are those
 /// at the latest occurrence.
-void show_last_known(AxisHealth& axis, const FaultRecord* record, AlignmentParameter parameter) {
-  if (record == nullptr) return;
+void show_last_known(AxisHealth& axis, const FaultRecord* record, const FaultRecord* limit,
+                     AlignmentParameter parameter) {
+  if (record == nullptr || limit == nullptr) return;
   axis.beyond_tolerance = record->status.last == TestResult::kFailed ? 1 : 0;
+  axis.effect = effect_of(record->status.last, limit->status.last);
   if (axis.beyond_tolerance == 0 || axis.std_rad != 0.0F) return;
   const auto i = static_cast<std::size_t>(parameter);
   const std::size_t variance = i * kNumberOfAlignmentParameters - i * (i + 1) / 2 + i;  // in the upper triangle
@@ -62,6 +71,7 @@ void show_last_known(AxisHealth& axis, const FaultRecord* record, AlignmentParam
   if (!std::isfinite(error_rad)) return;
   axis.error_rad = error_rad;
   axis.std_rad = std::sqrt(record->latest.covariance[variance]);
+  set_probabilities(axis);
 }
 
 }  // namespace
@@ -71,33 +81,20 @@ SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std
       config_(config),
       delivery_(config.delivery, 1.0 / radar.cycle_time_s, radar.deadline_s, radar.latency_s, config.window_s,
                 start_ns),
-      sight_(config.sight),
+      sight_monitor_(config.sight),
       messages_(config.window_s),
       rejected_(config.window_s),
       suspect_(config.window_s),
       received_(config.window_s),
       frozen_(config.window_s),
       contradicting_(config.window_s),
-      yaw_{{config, radar.tolerance.yaw_rad}, {config, vehicle_tolerance(radar, 2)}},
-      pitch_{{config, radar.tolerance.pitch_rad}, {config, vehicle_tolerance(radar, 1)}},
-      roll_{{config, radar.tolerance.roll_rad}, {config, vehicle_tolerance(radar, 0)}} {}
+      yaw_(angle_judge(radar, config, &AlignmentTolerance::yaw_rad, 2)),
+      pitch_(angle_judge(radar, config, &AlignmentTolerance::pitch_rad, 1)),
+      roll_(angle_judge(radar, config, &AlignmentTolerance::roll_rad, 0)),
+      sight_{radar.mounting_pose, radar.field_of_view, radar.antenna, radar.region_of_interest} {}
 
 Event SensorMonitor::event(RadarEvent radar_event) const {
   return {kind_of(radar_event), static_cast<std::uint8_t>(radar_id_)};
-}
-
-TestResult SensorMonitor::Angle::verdict() const {
-  if (sensor.is_beyond() || vehicle.is_beyond()) return TestResult::kFailed;
-  const bool is_passed = sensor.verdict() == TestResult::kPassed || vehicle.verdict() == TestResult::kPassed;
-  return is_passed ? TestResult::kPassed : TestResult::kNone;
-}
-
-AxisHealth SensorMonitor::Angle::health() const {
-  const bool by_vehicle = sensor.is_beyond() ? false : vehicle.is_beyond() || !sensor.is_observable();
-  if (!by_vehicle || !vehicle.is_observable()) return sensor.health();
-  AxisHealth health = vehicle.health();
-  health.about_vehicle_axis = 1;
-  return health;
 }
 
 void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
@@ -110,18 +107,18 @@ void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
   received_.add(now_ns);
   if ((scan.integrity & (kFrozen | kRepeated)) != 0) frozen_.add(now_ns);
   if ((scan.integrity & kContradictsEgo) != 0) contradicting_.add(now_ns);
-  const Sight sight = sight_of(scan);
-  sight_.observe(sight, speed_mps_, now_ns);
+  const SeenScan seen = seen_in(scan);
+  sight_monitor_.observe(seen, speed_mps_, now_ns);
   constexpr double kSmoothing = 0.1;
   detections_per_scan_ = delivery_.scans() == 1
-                             ? sight.detections
-                             : detections_per_scan_ + kSmoothing * (sight.detections - detections_per_scan_);
+                             ? seen.detections
+                             : detections_per_scan_ + kSmoothing * (seen.detections - detections_per_scan_);
 }
 
 void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
   const bool estimating = estimate.state == AlignmentState::kConverging || estimate.state == AlignmentState::kConverged;
   const std::int64_t time_ns = estimate.header.measurement_time_ns;
-  const auto judge = [&](Angle& angle, AlignmentParameter parameter, float sensor_rad, std::uint32_t sensor_bit,
+  const auto judge = [&](AngleJudge& angle, AlignmentParameter parameter, float sensor_rad, std::uint32_t sensor_bit,
                          float vehicle_rad, std::uint32_t vehicle_bit) {
     angle.sensor.update(sensor_rad, std_of(estimate.covariance, parameter),
                         estimating && estimate.is_observable(sensor_bit), time_ns);
@@ -134,6 +131,7 @@ void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
         estimate.vehicle_pitch_rad, alignment_axis::kVehiclePitch);
   judge(roll_, AlignmentParameter::kRoll, estimate.alignment_roll_rad, alignment_axis::kRoll, estimate.vehicle_roll_rad,
         alignment_axis::kVehicleRoll);
+  if (estimating) sight_loss_ = sight_loss(sight_, actual_mounting(sight_.mounting_pose, estimate));
 }
 
 void SensorMonitor::observe(const AlignmentEstimate& estimate) {
@@ -156,7 +154,8 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
     judge_axes(estimate);
   } else {
     // The angles were computed from a wrong input. No mounting error follows from them.
-    for (Angle* angle : {&yaw_, &pitch_, &roll_}) angle->clear();
+    for (AngleJudge* angle : {&yaw_, &pitch_, &roll_}) angle->clear();
+    sight_loss_ = {};
     drift_ = {};
   }
   step_changes_ = estimate.step_change.count;
@@ -207,8 +206,12 @@ SensorHealth SensorMonitor::quantities(std::int64_t now_ns) {
   return health;
 }
 
-float SensorMonitor::lateral_displacement_m(const AxisHealth& yaw) const {
-  return static_cast<float>(config_.reference_range_m * std::sin(yaw.error_rad));
+void SensorMonitor::set_consequences(SensorHealth& health, float speed_mps) const {
+  const double yaw_rad = health.yaw.error_rad;
+  health.lateral_displacement_m = static_cast<float>(lateral_displacement_m(config_.reference_range_m, yaw_rad));
+  health.lost_coverage_ratio = static_cast<float>(sight_loss_.coverage_ratio);
+  health.range_loss_ratio = static_cast<float>(sight_loss_.range_ratio);
+  health.velocity_error_mps = static_cast<float>(velocity_error_mps(speed_mps, yaw_rad));
 }
 
 FreezeFrame SensorMonitor::frame_of(const SensorHealth& health, const FreezeFrame& vehicle) const {
@@ -217,25 +220,24 @@ FreezeFrame SensorMonitor::frame_of(const SensorHealth& health, const FreezeFram
   frame.detections_per_scan = health.detections_per_scan;
   frame.lateral_displacement_m = health.lateral_displacement_m;
   frame.reference_range_m = health.reference_range_m;
+  frame.lost_coverage_ratio = health.lost_coverage_ratio;
+  frame.range_loss_ratio = health.range_loss_ratio;
+  frame.velocity_error_mps = health.velocity_error_mps;
   frame.estimate = estimate_;
   frame.covariance = covariance_;
   return frame;
 }
 
-void SensorMonitor::test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit, const Angle& angle,
-                              std::int64_t now_ns, const FreezeFrame& frame) const {
+void SensorMonitor::test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit,
+                              const AngleJudge& angle, std::int64_t now_ns, const FreezeFrame& frame) const {
   if (finding_ != AlignmentFinding::kNone) {
     // The angles were computed from a wrong input: neither an old nor a new verdict on them counts.
     faults.withdraw(event(misaligned));
     faults.withdraw(event(beyond_limit));
     return;
   }
-  const TestResult verdict = angle.verdict();
-  const TestResult limit = angle.is_inhibited()           ? TestResult::kFailed
-                           : verdict == TestResult::kNone ? TestResult::kNone
-                                                          : TestResult::kPassed;
-  faults.report(event(misaligned), verdict, now_ns, frame);
-  faults.report(event(beyond_limit), limit, now_ns, frame);
+  faults.report(event(misaligned), angle.tolerance(), now_ns, frame);
+  faults.report(event(beyond_limit), angle.limit(), now_ns, frame);
 }
 
 void SensorMonitor::test(FaultMemory& faults, std::int64_t now_ns, const SensorHealth& health,
@@ -270,8 +272,8 @@ void SensorMonitor::test(FaultMemory& faults, std::int64_t now_ns, const SensorH
   };
   report(RadarEvent::kFrozen, received > 0.0, exceeds(frozen_));
   report(RadarEvent::kEgoContradiction, received > 0.0, exceeds(contradicting_));
-  faults.report(event(RadarEvent::kBlind), sight_.blind(), now_ns, frame);
-  faults.report(event(RadarEvent::kReducedSight), sight_.reduced(), now_ns, frame);
+  faults.report(event(RadarEvent::kBlind), sight_monitor_.blind(), now_ns, frame);
+  faults.report(event(RadarEvent::kReducedSight), sight_monitor_.reduced(), now_ns, frame);
   report(RadarEvent::kWrongInput, has_estimate_, finding_ != AlignmentFinding::kNone);
   test_axis(faults, RadarEvent::kYawMisaligned, RadarEvent::kYawBeyondLimit, yaw_, now_ns, frame);
   test_axis(faults, RadarEvent::kPitchMisaligned, RadarEvent::kPitchBeyondLimit, pitch_, now_ns, frame);
@@ -308,25 +310,36 @@ void SensorMonitor::set_verdict(SensorHealth& health, const FaultMemory& faults)
         is_untested(RadarEvent::kNoData) ? DataQualifier::kNotAvailable : DataQualifier::kAvailableReduced;
     health.extended_qualifier = ExtendedQualifier::kInitialising;
   }
-  show_last_known(health.yaw, faults.find(event(RadarEvent::kYawMisaligned)), AlignmentParameter::kYaw);
-  show_last_known(health.pitch, faults.find(event(RadarEvent::kPitchMisaligned)), AlignmentParameter::kPitch);
-  show_last_known(health.roll, faults.find(event(RadarEvent::kRollMisaligned)), AlignmentParameter::kRoll);
+  show_last_known(health.yaw, faults.find(event(RadarEvent::kYawMisaligned)),
+                  faults.find(event(RadarEvent::kYawBeyondLimit)), AlignmentParameter::kYaw);
+  show_last_known(health.pitch, faults.find(event(RadarEvent::kPitchMisaligned)),
+                  faults.find(event(RadarEvent::kPitchBeyondLimit)), AlignmentParameter::kPitch);
+  show_last_known(health.roll, faults.find(event(RadarEvent::kRollMisaligned)),
+                  faults.find(event(RadarEvent::kRollBeyondLimit)), AlignmentParameter::kRoll);
 }
 
 SensorHealth SensorMonitor::judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle) {
   speed_mps_ = vehicle.speed_mps;
   SensorHealth health = quantities(now_ns);
-  health.lateral_displacement_m = lateral_displacement_m(health.yaw);
+  set_consequences(health, vehicle.speed_mps);
   test(faults, now_ns, health, vehicle);
   set_verdict(health, faults);
-  health.lateral_displacement_m = lateral_displacement_m(health.yaw);
+  set_consequences(health, vehicle.speed_mps);
   return health;
 }
 
 void SensorMonitor::restore(const FaultMemory& faults) {
-  if (faults.is_failed(event(RadarEvent::kYawMisaligned))) yaw_.restore_beyond();
-  if (faults.is_failed(event(RadarEvent::kPitchMisaligned))) pitch_.restore_beyond();
-  if (faults.is_failed(event(RadarEvent::kRollMisaligned))) roll_.restore_beyond();
+  const auto restore_angle = [&](AngleJudge& angle, RadarEvent misaligned, RadarEvent beyond_limit) {
+    const bool is_beyond = faults.is_failed(event(misaligned));
+    angle.restore(is_beyond, faults.is_failed(event(beyond_limit)));
+    const FaultRecord* const record = faults.find(event(misaligned));
+    if (is_beyond && std::isfinite(record->latest.lost_coverage_ratio)) {
+      sight_loss_ = {record->latest.lost_coverage_ratio, record->latest.range_loss_ratio};
+    }
+  };
+  restore_angle(yaw_, RadarEvent::kYawMisaligned, RadarEvent::kYawBeyondLimit);
+  restore_angle(pitch_, RadarEvent::kPitchMisaligned, RadarEvent::kPitchBeyondLimit);
+  restore_angle(roll_, RadarEvent::kRollMisaligned, RadarEvent::kRollBeyondLimit);
 }
 
 }  // namespace boresight::health

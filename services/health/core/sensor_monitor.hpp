@@ -10,6 +10,7 @@
 #include "interfaces/messages/service_status.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/health/core/axis_judge.hpp"
+#include "services/health/core/consequence.hpp"
 #include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/function/delivery_monitor.hpp"
 #include "services/health/core/function/sight_monitor.hpp"
@@ -41,7 +42,7 @@ class SensorMonitor {
   std::uint32_t radar_id_;
   Config config_;
   DeliveryMonitor delivery_;
-  SightMonitor sight_;
+  SightMonitor sight_monitor_;
   double speed_mps_ = 0.0;  // of the vehicle; NaN if it is not known
   std::uint64_t lost_scans_ = 0;
   std::uint64_t last_sequence_ = 0;
@@ -55,32 +56,18 @@ class SensorMonitor {
   SourceStatistics last_statistics_{};
   bool has_statistics_ = false;
   bool has_estimate_ = false;
-  /// One angle about the sensor's own axis and about the vehicle's axis. Either may be observable without the other.
-  struct Angle {
-    AxisJudge sensor;
-    AxisJudge vehicle;
-    [[nodiscard]] TestResult verdict() const;
-    [[nodiscard]] bool is_inhibited() const { return sensor.is_inhibited() || vehicle.is_inhibited(); }
-    [[nodiscard]] AxisHealth health() const;
-    void clear() {
-      sensor.clear();
-      vehicle.clear();
-    }
-    void restore_beyond() {
-      sensor.restore_beyond();
-      vehicle.restore_beyond();
-    }
-  };
-  Angle yaw_;
-  Angle pitch_;
-  Angle roll_;
+  AngleJudge yaw_;
+  AngleJudge pitch_;
+  AngleJudge roll_;
+  Sight sight_;
+  SightLoss sight_loss_;  // by the latest estimate, else that of the last known misalignment
   void judge_axes(const AlignmentEstimate& estimate);
   [[nodiscard]] Event event(RadarEvent radar_event) const;
   [[nodiscard]] SensorHealth quantities(std::int64_t now_ns);
-  [[nodiscard]] float lateral_displacement_m(const AxisHealth& yaw) const;
+  void set_consequences(SensorHealth& health, float speed_mps) const;
   [[nodiscard]] FreezeFrame frame_of(const SensorHealth& health, const FreezeFrame& vehicle) const;
   void test(FaultMemory& faults, std::int64_t now_ns, const SensorHealth& health, const FreezeFrame& vehicle);
-  void test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit, const Angle& angle,
+  void test_axis(FaultMemory& faults, RadarEvent misaligned, RadarEvent beyond_limit, const AngleJudge& angle,
                  std::int64_t now_ns, const FreezeFrame& frame) const;
   void set_verdict(SensorHealth& health, const FaultMemory& faults) const;
 

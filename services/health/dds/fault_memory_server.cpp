@@ -35,6 +35,9 @@ diagnostics::FreezeFrame to_frame(const FreezeFrame& frame, bool exists) {
   out.detections_per_scan(frame.detections_per_scan);
   out.lateral_displacement_m(frame.lateral_displacement_m);
   out.reference_range_m(frame.reference_range_m);
+  out.lost_coverage_ratio(frame.lost_coverage_ratio);
+  out.range_loss_ratio(frame.range_loss_ratio);
+  out.velocity_error_mps(frame.velocity_error_mps);
   out.estimate(frame.estimate);
   out.covariance(frame.covariance);
   out.configuration(frame.configuration);

@@ -28,8 +28,13 @@ diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
   out.error_rad(axis.error_rad);
   out.std_rad(axis.std_rad);
   out.tolerance_rad(axis.tolerance_rad);
+  out.limit_rad(axis.limit_rad);
+  out.beyond_tolerance_probability(axis.beyond_tolerance_probability);
+  out.beyond_limit_probability(axis.beyond_limit_probability);
   out.observable(axis.observable != 0);
   out.beyond_tolerance(axis.beyond_tolerance != 0);
+  out.about_vehicle_axis(axis.about_vehicle_axis != 0);
+  out.effect(static_cast<diagnostics::AxisEffect>(axis.effect));
   return out;
 }
 
@@ -85,13 +90,13 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
     add_value(status, name, "not observable");
     return;
   }
-  add_value(status, name,
-            fmt::format("{}, tolerance {}{}{}",
-                        text::with_std(axis.error_rad * kDegreesPerRadian, axis.std_rad * kDegreesPerRadian, "°",
-                                       text::Sign::kAlways),
-                        alignment_words::tolerance_text(axis.tolerance_rad),
-                        axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
-                        axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
+  add_value(
+      status, name,
+      fmt::format("{}, {}: beyond the tolerance of {} with probability {:.4f}, beyond the limit of {} with {:.4f}{}",
+                  alignment_words::angle_text(axis.error_rad, axis.std_rad), name_of(axis.effect),
+                  alignment_words::tolerance_text(axis.tolerance_rad), axis.beyond_tolerance_probability,
+                  alignment_words::tolerance_text(axis.limit_rad), axis.beyond_limit_probability,
+                  axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
 }
 
 DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
@@ -113,6 +118,9 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_axis(status, "roll error", sensor.roll);
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
+  add_value(status, "lost coverage", text::fixed(sensor.lost_coverage_ratio * 100.0, 1, " %"));
+  add_value(status, "loss of range", text::fixed(sensor.range_loss_ratio * 100.0, 1, " %"));
+  add_value(status, "velocity error", text::fixed(sensor.velocity_error_mps, 2, " m/s"));
   add_value(status, "alignment", std::string(alignment_words::key_of(sensor.reason)));
   add_value(status, "wrong input", std::string(alignment_words::key_of(sensor.finding)));
   add_value(status, "drift", sensor.drift.since_ns == 0 ? "none" : alignment_words::drift_sentence(sensor.drift));
@@ -182,6 +190,7 @@ diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size
   // The enumerations have the same order in the message and in the IDL; a value beyond them is sent as the last one.
   static_assert(static_cast<int>(DataQualifier::kNotAvailable) == diagnostics::NOT_AVAILABLE);
   static_assert(static_cast<int>(ExtendedQualifier::kDelayed) == diagnostics::DELAYED);
+  static_assert(static_cast<int>(AxisEffect::kNotAvailable) == diagnostics::EFFECT_NOT_AVAILABLE);
   const SensorHealth& sensor = report.sensors.at(index);
   diagnostics::SensorHealth out;
   out.radar_id(sensor.radar_id);
@@ -212,6 +221,9 @@ diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size
   out.speed_change(to_change(report.speed_change));
   out.lateral_displacement_m(sensor.lateral_displacement_m);
   out.reference_range_m(sensor.reference_range_m);
+  out.lost_coverage_ratio(sensor.lost_coverage_ratio);
+  out.range_loss_ratio(sensor.range_loss_ratio);
+  out.velocity_error_mps(sensor.velocity_error_mps);
   out.scans(sensor.scans);
   out.lost_scans(sensor.lost_scans);
   out.missed_scans(sensor.missed_scans);

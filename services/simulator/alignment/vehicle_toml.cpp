@@ -1,6 +1,7 @@
 #include "services/simulator/alignment/vehicle_toml.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,7 +28,6 @@ std::string radar_toml(const RadarConfig& radar) {
   const MountingPose& pose = radar.mounting_pose;
   const FieldOfView& view = radar.field_of_view;
   const SensorNoise& noise = radar.noise;
-  const AlignmentTolerance& tolerance = radar.tolerance;
   std::string text =
       fmt::format("\n[[radar]]\nid = {}\nname = {}\nprofile = \"ars548\"\n", radar.id, quoted(radar.name));
   text += fmt::format("source = {{link = \"udp\", address = \"{}\", port = {}, sender = \"{}\"}}\n",
@@ -44,8 +44,10 @@ std::string radar_toml(const RadarConfig& radar) {
   text += fmt::format(
       "noise = {{range_std_m = {}, azimuth_std_deg = {}, elevation_std_deg = {}, range_rate_std_mps = {}}}\n",
       noise.range_std_m, degrees(noise.azimuth_std_rad), degrees(noise.elevation_std_rad), noise.range_rate_std_mps);
-  text += fmt::format("tolerance = {{yaw_deg = {}, pitch_deg = {}, roll_deg = {}}}\n", degrees(tolerance.yaw_rad),
-                      degrees(tolerance.pitch_rad), degrees(tolerance.roll_rad));
+  for (const auto& [key, angles] : {std::pair{"tolerance", radar.tolerance}, std::pair{"limit", radar.limit}}) {
+    text += fmt::format("{} = {{yaw_deg = {}, pitch_deg = {}, roll_deg = {}}}\n", key, degrees(angles.yaw_rad),
+                        degrees(angles.pitch_rad), degrees(angles.roll_rad));
+  }
   return text;
 }
 

@@ -65,10 +65,17 @@ HealthReport report() {
   misaligned.yaw.error_rad = 0.0436F;
   misaligned.yaw.std_rad = 0.0004F;
   misaligned.yaw.tolerance_rad = 0.0262F;
+  misaligned.yaw.limit_rad = 0.0524F;
+  misaligned.yaw.beyond_tolerance_probability = 1.0F;
+  misaligned.yaw.beyond_limit_probability = 0.25F;
+  misaligned.yaw.effect = AxisEffect::kReduced;
   misaligned.yaw.observable = misaligned.yaw.beyond_tolerance = 1;
   misaligned.speed_scale = 1.012F;
   misaligned.lateral_displacement_m = 4.36F;
   misaligned.reference_range_m = 100.0F;
+  misaligned.lost_coverage_ratio = 0.031F;
+  misaligned.range_loss_ratio = 0.012F;
+  misaligned.velocity_error_mps = 0.61F;
   misaligned.scans = 12'345'678'901ULL;
   misaligned.missed_scans = 23'456'789'012ULL;
   misaligned.suspect_scans = 34;
@@ -133,8 +140,14 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(s.yaw().error_rad(), 0.0436F);
   EXPECT_TRUE(s.yaw().observable());
   EXPECT_TRUE(s.yaw().beyond_tolerance());
+  EXPECT_EQ(s.yaw().limit_rad(), 0.0524F);
+  EXPECT_EQ(s.yaw().beyond_tolerance_probability(), 1.0F);
+  EXPECT_EQ(s.yaw().beyond_limit_probability(), 0.25F);
+  EXPECT_EQ(s.yaw().effect(), diagnostics::EFFECT_REDUCED);
   EXPECT_FALSE(s.pitch().observable());
-  EXPECT_EQ(s.explanation().find("yaw +2.498 ± 0.023°, beyond the tolerance of 1.5°"), 0U) << s.explanation();
+  EXPECT_EQ(s.pitch().effect(), diagnostics::EFFECT_UNKNOWN);
+  EXPECT_EQ(s.explanation().find("yaw +2.498 ± 0.023°, reduced: beyond 1.5°; 4.4 m at 100 m, 3 % of"), 0U)
+      << s.explanation();
   EXPECT_EQ(s.alignment_reason(), "none");
   EXPECT_EQ(s.finding(), "none");
   EXPECT_EQ(s.range_rate_scale(), 0.0025F);
@@ -153,6 +166,9 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(s.e2e_wrong(), 7u);
   EXPECT_EQ(s.conditions(), source_condition::kSupply | source_condition::kWithoutEgoMotion);
   EXPECT_EQ(s.lateral_displacement_m(), 4.36F);
+  EXPECT_EQ(s.lost_coverage_ratio(), 0.031F);
+  EXPECT_EQ(s.range_loss_ratio(), 0.012F);
+  EXPECT_EQ(s.velocity_error_mps(), 0.61F);
   const diagnostics::SystemHealth& system = received.system;
   EXPECT_EQ(system.vehicle_name(), "test car");
   EXPECT_EQ(system.time_ns(), kTime_ns);
@@ -177,7 +193,7 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(statuses[0].level_(), 1);
   EXPECT_EQ(statuses[1].level_(), 0);
   EXPECT_EQ(statuses[2].name_(), "boresight/radar/front_right");
-  EXPECT_EQ(statuses[2].message_().find("AVAILABLE_REDUCED MISALIGNED: yaw +2.498 ± 0.023°, beyond the tolerance"), 0U)
+  EXPECT_EQ(statuses[2].message_().find("AVAILABLE_REDUCED MISALIGNED: yaw +2.498 ± 0.023°, reduced: beyond 1.5°"), 0U)
       << statuses[2].message_();
   EXPECT_EQ(statuses[2].level_(), 1);
   std::map<std::string, std::string> values;
@@ -265,8 +281,9 @@ TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {
   const diagnostics::SensorHealth s = to_sensor_health(report(), 1, vehicle(), kTime_ns);
   const std::string line = diagnostics_text::to_line(s);
   for (const char* part :
-       {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.498 ± 0.023° (beyond tolerance 1.50°)",
-        "lateral displacement +4.36 m at 100 m", "20.0 Hz", "reported by the sensor: supply, without ego motion"}) {
+       {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.498 ± 0.023° (reduced, beyond 1.50°)",
+        "lost coverage 3.1 %  loss of range 1.2 %  velocity error 0.61 m/s", "lateral displacement +4.36 m at 100 m",
+        "20.0 Hz", "reported by the sensor: supply, without ego motion"}) {
     EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
   }
   EXPECT_EQ(line.find("  pitch "), std::string::npos) << "not observable: " << line;

@@ -104,9 +104,29 @@ AxisHealth axis(double error_deg, double std_deg, double tolerance_deg, bool bey
 
 TEST(BeyondTolerance, NamesTheAxisThatIsBeyondWithItsOwnTolerance) {
   EXPECT_EQ(beyond_tolerance(axis(0.0, 0.03, 1.5, false), axis(0.1, 0.05, 1.5, false), axis(4.2, 0.21, 3.0, true)),
-            "roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+            "roll +4.20 ± 0.21°, reduced: beyond 3°");
   EXPECT_EQ(beyond_tolerance(axis(1.7, 0.03, 1.5, true), axis(-2.0, 0.05, 1.5, true), axis(0.0, 0.2, 3.0, false)),
-            "yaw +1.700 ± 0.030°, beyond the tolerance of 1.5°; pitch -2.000 ± 0.050°, beyond the tolerance of 1.5°");
+            "yaw +1.700 ± 0.030°, reduced: beyond 1.5°; pitch -2.000 ± 0.050°, reduced: beyond 1.5°");
+}
+
+TEST(BeyondTolerance, NamesTheLimitOfAnAxisThatIsBeyondIt) {
+  AxisHealth yaw = axis(-3.4, 0.03, 1.5, true);
+  yaw.limit_rad = static_cast<float>(3.0 * kRadiansPerDegree);
+  yaw.effect = AxisEffect::kNotAvailable;
+  EXPECT_EQ(beyond_tolerance(yaw, {}, {}), "yaw -3.400 ± 0.030°, not available: beyond 3°");
+}
+
+TEST(Consequences, NamesThoseThatDoNotRoundToZero) {
+  SensorHealth sensor{};
+  sensor.lateral_displacement_m = -4.36F;
+  sensor.reference_range_m = 100.0F;
+  sensor.velocity_error_mps = std::nanf("");  // the speed is not known
+  EXPECT_EQ(consequences(sensor), "4.4 m at 100 m");
+  sensor.lost_coverage_ratio = 0.031F;
+  sensor.range_loss_ratio = 0.012F;
+  sensor.velocity_error_mps = 0.87F;
+  EXPECT_EQ(consequences(sensor),
+            "4.4 m at 100 m, 3 % of the view lost, 1 % of the range lost, velocities wrong by 0.9 m/s");
 }
 
 TEST(ChangeSentence, NamesSizeAndDirection) {
@@ -131,7 +151,10 @@ TEST(Explanation, IsTheReasonOnlyIfNothingElseIsToBeSaid) {
   sensor.reason = AlignmentReason::kLargeStd;
   EXPECT_EQ(explanation_of(sensor, four_corners()), "the standard deviation is still above the configured one");
   sensor.roll = axis(4.2, 0.21, 3.0, true);
-  EXPECT_EQ(explanation_of(sensor, four_corners()), "roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+  sensor.reference_range_m = 100.0F;
+  sensor.lost_coverage_ratio = 0.02F;
+  EXPECT_EQ(explanation_of(sensor, four_corners()),
+            "roll +4.20 ± 0.21°, reduced: beyond 3°; 0.0 m at 100 m, 2 % of the view lost");
 }
 
 }  // namespace

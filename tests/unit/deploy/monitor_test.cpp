@@ -121,7 +121,8 @@ TEST(Accumulator, TakesReasonAxisAndChangesAndKeepsThemThroughARecord) {
   report.sensors[0].finding = AlignmentFinding::kSpeedZero;
   report.sensors[1].radar_id = 2;
   report.sensors[1].extended_qualifier = ExtendedQualifier::kMisaligned;
-  report.sensors[1].roll = {0.0733F, 0.0037F, 0.0524F, 1, 1, 0, 0};
+  report.sensors[1].roll = {0.0733F, 0.0037F, 0.0524F, 0.105F, 1.0F, 0.0F, 1, 1, 0, AxisEffect::kReduced};
+  report.sensors[1].reference_range_m = 100.0F;
   report.load_change = {5, 0.0136F, 1};
   accumulator.observe(report);
   std::istringstream record(to_json(accumulator.snapshot(1)));
@@ -134,11 +135,11 @@ TEST(Accumulator, TakesReasonAxisAndChangesAndKeepsThemThroughARecord) {
   EXPECT_NEAR(left.details.range_rate_scale, 0.0025, 1e-7);
   EXPECT_EQ(left.extended_qualifier, ExtendedQualifier::kWrongInput);
   EXPECT_EQ(left.explanation, "speed signal is zero although the vehicle moves");
-  EXPECT_EQ(right.explanation, "roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+  EXPECT_EQ(right.explanation, "roll +4.20 ± 0.21°, reduced: beyond 3°; 0.0 m at 100 m");
   EXPECT_EQ(right.beyond_tolerance, (std::array<bool, 3>{false, false, true}));
   EXPECT_EQ(read[0].load_change, "load changed the vehicle's pitch by +0.78° (nose up)");
   const std::string screen = render_screen(read[0], {.width = 300});
-  EXPECT_THAT(screen, ::testing::HasSubstr("beyond the tolerance of 3°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("reduced: beyond 3°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("load changed the vehicle's pitch"));
 }
 

@@ -37,11 +37,11 @@ TEST(Summary, NamesTheAxisThatIsBeyondItsTolerance) {
   for (auto& s : snapshots) {
     s.radars[1].yaw.value_rad = 0.0;
     if (s.radars[1].extended_qualifier == ExtendedQualifier::kMisaligned) {
-      s.radars[1].explanation = "roll +4.20 ± 0.21°, beyond the tolerance of 3°";
+      s.radars[1].explanation = "roll +4.20 ± 0.21°, reduced: beyond 3°";
     }
   }
   EXPECT_EQ(verdict_line(summarise(snapshots, synthetic_truth()).radars[1]),
-            "front_right: MISALIGNED, roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+            "front_right: MISALIGNED, roll +4.20 ± 0.21°, reduced: beyond 3°");
   for (auto& s : snapshots) s.radars[1].explanation.clear();
   EXPECT_EQ(verdict_line(summarise(snapshots, synthetic_truth()).radars[1]),
             "front_right: MISALIGNED, an axis other than yaw is beyond its tolerance");

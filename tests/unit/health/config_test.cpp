@@ -42,11 +42,10 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(s.max_suspect_ratio, expected.max_suspect_ratio);
   EXPECT_EQ(s.restart_memory_s, expected.restart_memory_s);
   EXPECT_EQ(s.start_grace_s, expected.start_grace_s);
-  EXPECT_EQ(s.confidence_sigma, expected.confidence_sigma);
+  EXPECT_EQ(s.confidence, expected.confidence);
   EXPECT_EQ(s.set_s, expected.set_s);
   EXPECT_EQ(s.clear_s, expected.clear_s);
   EXPECT_EQ(s.clear_ratio, expected.clear_ratio);
-  EXPECT_NEAR(s.inhibit_rad, expected.inhibit_rad, 1e-4);
   EXPECT_EQ(s.reference_range_m, expected.reference_range_m);
   EXPECT_EQ(s.pipeline.window_s, expected.pipeline.window_s);
   EXPECT_EQ(s.pipeline.latency_budget_s, expected.pipeline.latency_budget_s);
@@ -88,6 +87,10 @@ TEST(HealthConfig, NonsenseIsRefusedWithWhatIsAllowed) {
   EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.4"), testing::HasSubstr("0.1 … 0.35")) << "too late a verdict";
   EXPECT_THAT(problems_of("[fault_memory]\nageing_cycles = 0"), testing::HasSubstr("1 … 255"));
   EXPECT_THAT(problems_of("[fault_memory]\noperation_cycle = \"drive\""), testing::HasSubstr("start"));
+  EXPECT_THAT(problems_of("[misalignment]\nconfidence = 1.0"), testing::HasSubstr("0.9 … 0.9999"));
+  EXPECT_THAT(problems_of("[misalignment]\nconfidence_sigma = 2.33"), testing::HasSubstr("is called 'confidence' now"));
+  EXPECT_THAT(problems_of("[misalignment]\ninhibit_deg = 7.3"),
+              testing::HasSubstr("is 'limit' of each radar in the vehicle file now"));
 }
 
 }  // namespace

@@ -47,6 +47,24 @@ TEST_F(RestartTest, AMisalignedRadarStaysMisalignedFromTheFirstReportOn) {
       << "the same occurrence goes on";
 }
 
+TEST_F(RestartTest, ARadarBeyondItsLimitStaysNotAvailableUntilItIsClearlyWithin) {
+  estimate_[1].alignment_yaw_rad = static_cast<float>(3.5 * kRadiansPerDegree);
+  run(5.0);
+  expect(2, kNotAvailable, kMisaligned);
+  const float lost = radar(2).lost_coverage_ratio;
+  EXPECT_GT(lost, 0.0F);
+  restart();
+  EXPECT_EQ(radar(2).yaw.effect, AxisEffect::kNotAvailable);
+  EXPECT_EQ(radar(2).yaw.beyond_limit_probability, 1.0F);
+  EXPECT_EQ(radar(2).lost_coverage_ratio, lost) << "as last known";
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.9 * kRadiansPerDegree);
+  run(5.0);
+  expect(2, kNotAvailable, kMisaligned);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
+  run(3.0);
+  expect(2, kAvailableReduced, kMisaligned);
+}
+
 TEST_F(RestartTest, AMisalignedRadarWithoutNewEstimatesStaysMisaligned) {
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(5.0);
@@ -147,6 +165,9 @@ TEST_F(RestartTest, TheFreezeFrameHoldsWhatWasKnown) {
   EXPECT_NEAR(frame.estimate[1], 2.5 * kRadiansPerDegree, 1e-6);
   EXPECT_EQ(frame.covariance[4], estimate_[1].covariance[5]);
   EXPECT_NEAR(frame.lateral_displacement_m, 4.36, 0.01);
+  EXPECT_EQ(frame.lost_coverage_ratio, radar(2).lost_coverage_ratio);
+  EXPECT_EQ(frame.range_loss_ratio, radar(2).range_loss_ratio);
+  EXPECT_NEAR(frame.velocity_error_mps, 2.0 * 13.9 * std::sin(1.25 * kRadiansPerDegree), 1e-5);
   EXPECT_EQ(frame.configuration, 0x1234u);
   EXPECT_STREQ(frame.software.data(), "9.8.7");
   EXPECT_GT(frame.time_ns, kEpoch);

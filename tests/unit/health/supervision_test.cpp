@@ -75,10 +75,35 @@ TEST_F(SupervisionTest, MisalignedRadarIsReducedAndFarBeyondToleranceNotAvailabl
   EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kRadiansPerDegree), 1e-3);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
   EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
-  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kRadiansPerDegree);
-  run(1.0);
+  EXPECT_EQ(radar(2).yaw.effect, AxisEffect::kReduced);
+  EXPECT_EQ(radar(1).yaw.effect, AxisEffect::kCompensated);
+  EXPECT_EQ(radar(1).pitch.effect, AxisEffect::kUnknown) << "not observable";
+  estimate_[1].alignment_yaw_rad = static_cast<float>(-3.2 * kRadiansPerDegree);
+  run(2.0);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
+  EXPECT_EQ(radar(2).yaw.effect, AxisEffect::kNotAvailable);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(-2.5 * kRadiansPerDegree);
+  run(2.0);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailableReduced);
+}
+
+TEST_F(SupervisionTest, ConsequencesOfAMisalignmentAreReported) {
+  run(1.0);
+  EXPECT_EQ(radar(2).lost_coverage_ratio, 0.0F);
+  EXPECT_TRUE(std::isnan(radar(2).velocity_error_mps)) << "no speed was received";
+  EgoMotion motion{};
+  motion.fields = ego_field::kSpeed;
+  motion.speed_mps = 20.0F;
+  supervision_.observe(motion);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
+  run(3.0);
+  // Of a field of view of 2.6 rad, 2.5° at one edge are lost.
+  EXPECT_NEAR(radar(2).lost_coverage_ratio, 2.5 * kRadiansPerDegree / 2.6, 1e-4);
+  EXPECT_NEAR(radar(2).velocity_error_mps, 40.0 * std::sin(1.25 * kRadiansPerDegree), 1e-4);
+  EXPECT_GT(radar(2).range_loss_ratio, 0.0F);
+  EXPECT_EQ(radar(1).lost_coverage_ratio, 0.0F);
+  EXPECT_EQ(radar(1).velocity_error_mps, 0.0F);
 }
 
 TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {

@@ -69,6 +69,8 @@ inline std::vector<std::string> verdicts() {
   never_seen.sensors[0].last_seen_s = -1.0F;
   run::HealthResult seen = never_seen;
   seen.sensors[0].last_seen_s = 0.05F;
+  never_seen.sensors[0].velocity_error_mps = std::nanf("");
+  never_seen.sensors[0].yaw.limit_rad = INFINITY;
   seen.load_change.time_ns = seen.speed_change.time_ns = seen.sensors[0].drift.since_ns = 1;
   return {run::to_json_line(never_seen, one_radar()), run::to_json_line(seen, one_radar())};
 }
@@ -224,6 +226,9 @@ inline std::vector<std::string> fault_records() {
     frame->detections_per_scan(nothing);
     frame->lateral_displacement_m(nothing);
     frame->reference_range_m(nothing);
+    frame->lost_coverage_ratio(nothing);
+    frame->range_loss_ratio(nothing);
+    frame->velocity_error_mps(nothing);
     frame->estimate().fill(nothing);
     frame->covariance().fill(nothing);
   }

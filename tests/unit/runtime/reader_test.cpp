@@ -82,6 +82,18 @@ TEST(Reader, RenamedKeyIsAnErrorThatNamesTheKeyOfToday) {
   }
 }
 
+TEST(Reader, MovedKeyIsAnErrorThatNamesItsPlaceOfToday) {
+  for (const MovedKey& key : kMovedKeys) {
+    const std::string former(key.former), beside(key.beside);
+    Reader root = Reader::parse("[t]\n" + former + " = 1\n[u]\n" + former + " = 1\n", "x.toml");
+    static_cast<void>(root.table("t").number(beside, {}, 1));
+    static_cast<void>(root.table("u").number("limit", {}, 1));
+    EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:2: t." + former + ": is " + std::string(key.current) +
+                                                    " now\n" + "x.toml:4: u." + former +
+                                                    ": unknown key; known here: limit");
+  }
+}
+
 TEST(Reader, FormerKeyIsAnOrdinaryUnknownKeyWhereTheNewOneIsNotKnown) {
   const std::string former(kRenamedKeys.front().former);
   Reader root = Reader::parse(former + " = 1\n", "x.toml");

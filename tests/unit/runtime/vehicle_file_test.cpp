@@ -52,6 +52,39 @@ TEST(VehicleFile, ARadarsStatisticsAreAProfilesNameOrFile) {
   EXPECT_THAT(error_of(text + "statistics = 3\n"), HasSubstr("radar[0].statistics: must be a string"));
 }
 
+TEST(VehicleFile, LimitOfUseIsAboveTheToleranceAndTwiceItByDefault) {
+  const std::string text = std::string(kEgo) + std::string(kRadar);
+  const RadarConfig plain = read(text).radars.at(0);
+  EXPECT_NEAR(plain.limit.yaw_rad * 180.0 / M_PI, 3.0, 1e-3);
+  EXPECT_NEAR(plain.limit.roll_rad * 180.0 / M_PI, 6.0, 1e-3);
+  EXPECT_NEAR(RadarConfig{}.limit.yaw_rad, plain.limit.yaw_rad, 1e-12);
+  const RadarConfig stated = read(text + "tolerance = {yaw_deg = 2.0}\nlimit = {pitch_deg = 4.0}\n").radars.at(0);
+  EXPECT_NEAR(stated.limit.yaw_rad * 180.0 / M_PI, 4.0, 1e-9);
+  EXPECT_NEAR(stated.limit.pitch_rad * 180.0 / M_PI, 4.0, 1e-9);
+  const std::string error = error_of(text + "tolerance = {yaw_deg = 2.0}\nlimit = {yaw_deg = 2.0, roll_deg = 31.0}\n");
+  EXPECT_THAT(error, HasSubstr("car.toml:11: radar[0].limit.yaw_deg: must be above the tolerance of this axis"));
+  EXPECT_THAT(error, HasSubstr("radar[0].limit.roll_deg: 31 is out of range"));
+}
+
+TEST(VehicleFile, LobeOfTheAntennaIsAsWideAsTheFieldOfViewByDefault) {
+  const std::string text =
+      std::string(kEgo) + std::string(kRadar) + "field_of_view = {azimuth_min_deg = -60.0, azimuth_max_deg = 70.0}\n";
+  EXPECT_NEAR(read(text).radars.at(0).antenna.azimuth_width_rad * 180.0 / M_PI, 130.0, 1e-9);
+  const RadarConfig stated = read(text + "antenna = {azimuth_width_deg = 80.0}\n").radars.at(0);
+  EXPECT_NEAR(stated.antenna.azimuth_width_rad * 180.0 / M_PI, 80.0, 1e-9);
+  EXPECT_THAT(error_of(text + "antenna = {azimuth_width_deg = 0.0}\n"),
+              HasSubstr("antenna.azimuth_width_deg: 0 is out"));
+}
+
+TEST(VehicleFile, RegionOfInterestIsEverythingByDefaultAndInOrder) {
+  const std::string text = std::string(kEgo) + std::string(kRadar);
+  EXPECT_DOUBLE_EQ(read(text).radars.at(0).region_of_interest.azimuth_min_rad, -M_PI);
+  EXPECT_DOUBLE_EQ(read(text).radars.at(0).region_of_interest.elevation_max_rad, M_PI / 2.0);
+  EXPECT_THAT(error_of(text + "region_of_interest = {azimuth_min_deg = 20.0, azimuth_max_deg = 10.0}\n"),
+              HasSubstr("region_of_interest.azimuth_min_deg: must be below azimuth_max_deg"));
+  EXPECT_EQ(error_of(text + "region_of_interest = {azimuth_min_deg = 150.0, azimuth_max_deg = 210.0}\n"), "");
+}
+
 TEST(VehicleFile, SortsRadarsById) {
   std::string second(kRadar);
   second.replace(second.find("id = 2"), 6, "id = 1");

@@ -93,7 +93,8 @@ TEST(VehicleSchema, PageListsExactlyTheKeysOfTheReader) {
   EXPECT_EQ(of_ego, documented(sections.at("Vehicle"), "ego."));
   for (const auto& [profile, link] : kLinkOfProfile) of_radar.merge(known(radar(profile, {{"no_such_key", "1"}})));
   EXPECT_EQ(of_radar, documented(sections.at("Radar"), ""));
-  for (const std::string table : {"mounting_pose", "field_of_view", "noise", "tolerance"}) {
+  for (const std::string table :
+       {"mounting_pose", "field_of_view", "antenna", "region_of_interest", "noise", "tolerance", "limit"}) {
     EXPECT_EQ(known(radar("toyota", {{table + ".no_such_key", "1"}})), documented(sections.at("Radar"), table + "."));
   }
   EXPECT_EQ(known(radar("ars548", {{"e2e.no_such_key", "1"}})), documented(sections.at("e2e"), ""));

@@ -77,6 +77,9 @@ std::string problem_of_unknown_key(const std::string& key, const std::set<std::s
       return fmt::format("is called '{}' now", renamed.current);
     }
   }
+  for (const MovedKey& moved : kMovedKeys) {
+    if (moved.former == key && known.contains(moved.beside)) return fmt::format("is {} now", moved.current);
+  }
   const std::vector<std::string> near = near_names(key, {known.begin(), known.end()});
   return fmt::format("unknown key; {}known here: {}", near.empty() ? "" : fmt::format("similar: '{}'; ", near.front()),
                      fmt::join(known, ", "));

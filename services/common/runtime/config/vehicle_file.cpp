@@ -110,6 +110,41 @@ AlignmentTolerance read_tolerance(Reader reader) {
   return tolerance;
 }
 
+AlignmentTolerance read_limit(Reader reader, const AlignmentTolerance& tolerance) {
+  const auto read = [&reader](std::string_view key, double tolerance_rad) {
+    const double limit_rad = reader.angle_deg(key, {0.1, kMaxLimit_deg}, kLimitPerTolerance * tolerance_rad);
+    // Otherwise the radar would never be degraded before it is not available.
+    if (limit_rad <= tolerance_rad) reader.reject(key, "must be above the tolerance of this axis");
+    return limit_rad;
+  };
+  return {.yaw_rad = read("yaw_deg", tolerance.yaw_rad),
+          .pitch_rad = read("pitch_deg", tolerance.pitch_rad),
+          .roll_rad = read("roll_deg", tolerance.roll_rad)};
+}
+
+/// Without keys the lobe is as wide as the field of view.
+AntennaLobe read_antenna(Reader reader, const FieldOfView& view) {
+  const double azimuth_rad = view.azimuth_max_rad - view.azimuth_min_rad;
+  const double elevation_rad = view.elevation_max_rad - view.elevation_min_rad;
+  return {.azimuth_width_rad = reader.angle_deg("azimuth_width_deg", {0.5, 360.0}, azimuth_rad),
+          .elevation_width_rad = reader.angle_deg("elevation_width_deg", {0.5, 180.0}, elevation_rad)};
+}
+
+RegionOfInterest read_region(Reader reader) {
+  RegionOfInterest region;
+  region.azimuth_min_rad = reader.angle_deg("azimuth_min_deg", {-180.0, 180.0}, region.azimuth_min_rad);
+  region.azimuth_max_rad = reader.angle_deg("azimuth_max_deg", {-180.0, 360.0}, region.azimuth_max_rad);
+  region.elevation_min_rad = reader.angle_deg("elevation_min_deg", {-90.0, 90.0}, region.elevation_min_rad);
+  region.elevation_max_rad = reader.angle_deg("elevation_max_deg", {-90.0, 90.0}, region.elevation_max_rad);
+  if (region.azimuth_min_rad >= region.azimuth_max_rad) {
+    reader.reject("azimuth_min_deg", "must be below azimuth_max_deg");
+  }
+  if (region.elevation_min_rad >= region.elevation_max_rad) {
+    reader.reject("elevation_min_deg", "must be below elevation_max_deg");
+  }
+  return region;
+}
+
 EgoConfig read_ego(Reader reader, VehicleUse use) {
   EgoConfig ego;
   if (use == VehicleUse::kLive) reader.require("source");
@@ -185,7 +220,10 @@ RadarConfig read_radar(Reader reader, VehicleUse use) {
   radar.mounting_pose = read_pose(reader.table("mounting_pose"));
   radar.field_of_view = read_field_of_view(reader.table("field_of_view"));
   radar.noise = read_noise(reader.table("noise"));
+  radar.antenna = read_antenna(reader.table("antenna"), radar.field_of_view);
+  radar.region_of_interest = read_region(reader.table("region_of_interest"));
   radar.tolerance = read_tolerance(reader.table("tolerance"));
+  radar.limit = read_limit(reader.table("limit"), radar.tolerance);
   radar.statistics = reader.text("statistics", radar.statistics);
   if (radar.statistics.empty()) reader.reject("statistics", "must be the name of a radar profile, or a file");
   radar.cycle_time_s = reader.number("cycle_time_s", {0.005, 2.0}, radar.cycle_time_s);

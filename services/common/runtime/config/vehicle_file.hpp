@@ -9,9 +9,9 @@
 
 namespace boresight::config {
 
-/// Largest tolerance of a mounting error. The health service's limit for NOT_AVAILABLE, inhibit_deg, is not below it:
-/// with a larger tolerance a radar would never be degraded first.
+/// Largest tolerance of a mounting error, and largest limit of use: larger ones would switch the verdict off.
 inline constexpr double kMaxTolerance_deg = 5.0;
+inline constexpr double kMaxLimit_deg = 30.0;
 
 /// kOffline: for tables of detections instead of links; `ego`, `profile` and `source` are optional.
 enum class VehicleUse : std::uint8_t { kLive, kOffline };

@@ -17,8 +17,9 @@ void write_frame(state::ByteWriter& out, const FreezeFrame& frame) {
   out.u64(static_cast<std::uint64_t>(frame.time_ns));
   out.u64(frame.uptime_ns);
   out.u32(frame.cycle);
-  for (const float value : {frame.speed_mps, frame.rate_hz, frame.detections_per_scan, frame.lateral_displacement_m,
-                            frame.reference_range_m}) {
+  for (const float value :
+       {frame.speed_mps, frame.rate_hz, frame.detections_per_scan, frame.lateral_displacement_m,
+        frame.reference_range_m, frame.lost_coverage_ratio, frame.range_loss_ratio, frame.velocity_error_mps}) {
     out.f32(value);
   }
   for (const float value : frame.estimate) out.f32(value);
@@ -32,8 +33,9 @@ FreezeFrame read_frame(state::ByteReader& in) {
   frame.time_ns = static_cast<std::int64_t>(in.u64());
   frame.uptime_ns = in.u64();
   frame.cycle = in.u32();
-  for (float* value : {&frame.speed_mps, &frame.rate_hz, &frame.detections_per_scan, &frame.lateral_displacement_m,
-                       &frame.reference_range_m}) {
+  for (float* value :
+       {&frame.speed_mps, &frame.rate_hz, &frame.detections_per_scan, &frame.lateral_displacement_m,
+        &frame.reference_range_m, &frame.lost_coverage_ratio, &frame.range_loss_ratio, &frame.velocity_error_mps}) {
     *value = in.f32();
   }
   for (float& value : frame.estimate) value = in.f32();

@@ -10,8 +10,8 @@
 
 namespace boresight::health {
 
-inline constexpr std::uint32_t kFaultMemoryVersion = 1;
-inline constexpr std::size_t kFreezeFrameBytes = 8 + 8 + 6 * 4 + 4 * 4 + 10 * 4 + 8 + 16;
+inline constexpr std::uint32_t kFaultMemoryVersion = 2;
+inline constexpr std::size_t kFreezeFrameBytes = 8 + 8 + 9 * 4 + 4 * 4 + 10 * 4 + 8 + 16;
 inline constexpr std::size_t kFaultRecordBytes = 4 + 5 + 2 + 2 * kFreezeFrameBytes;
 inline constexpr std::size_t kMaxFaultMemoryBytes = 20 + 16 + kNumberOfEventKinds * kMaxRadars * kFaultRecordBytes;
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace boresight::health {
 
@@ -16,6 +17,10 @@ struct FreezeFrame {
   float detections_per_scan = 0.0F;
   float lateral_displacement_m = 0.0F;  ///< consequence, at the reference range
   float reference_range_m = 0.0F;
+  // Further consequences, as in SensorHealth:
+  float lost_coverage_ratio = std::numeric_limits<float>::quiet_NaN();
+  float range_loss_ratio = std::numeric_limits<float>::quiet_NaN();
+  float velocity_error_mps = std::numeric_limits<float>::quiet_NaN();
   std::array<float, 4> estimate{};     ///< k_v, yaw, pitch, roll (rad), as AlignmentParameter
   std::array<float, 10> covariance{};  ///< of it: upper triangle, row by row
   std::uint64_t configuration = 0;     ///< fingerprint of the configuration files

@@ -20,7 +20,7 @@ void SightMonitor::smooth(Quantity& quantity, double value, double share) const 
   quantity.smoothed += share * (value - quantity.smoothed);
 }
 
-void SightMonitor::observe(const Sight& sight, double speed_mps, std::int64_t time_ns) {
+void SightMonitor::observe(const SeenScan& seen, double speed_mps, std::int64_t time_ns) {
   is_moving_ = std::abs(speed_mps) >= config_.least_speed_mps;  // false without a known speed
   if (!is_moving_) {
     moved_s_ = 0.0;
@@ -32,8 +32,8 @@ void SightMonitor::observe(const Sight& sight, double speed_mps, std::int64_t ti
   last_ns_ = time_ns;
   moved_s_ = is_first ? 0.0 : moved_s_ + dt_s;
   const double share = is_first ? 1.0 : 1.0 - std::exp(-dt_s / config_.smoothing_s);
-  smooth(count_, std::log1p(sight.detections), share);
-  if (sight.detections > 0.0) smooth(range_, std::log(std::max(sight.range_m, 1.0)), share);
+  smooth(count_, std::log1p(seen.detections), share);
+  if (seen.detections > 0.0) smooth(range_, std::log(std::max(seen.range_m, 1.0)), share);
   // What is smoothed must have forgotten its first value. A level must not follow the loss that it is to show.
   const bool is_settled = moved_s_ >= config_.smoothing_s;
   if (!is_settled) return;

@@ -24,7 +24,7 @@ struct SightConfig {
 };
 
 /// A scan as the monitor sees it.
-struct Sight {
+struct SeenScan {
   double detections = 0.0;
   double range_m = 0.0;  ///< that nine tenths of the detections do not exceed; not used without detections
 };
@@ -59,7 +59,7 @@ class SightMonitor {
   explicit SightMonitor(const SightConfig& config);
 
   /// One scan at `time_ns`. Without a known speed, or below the least one, nothing is judged or learnt.
-  void observe(const Sight& sight, double speed_mps, std::int64_t time_ns);
+  void observe(const SeenScan& seen, double speed_mps, std::int64_t time_ns);
 
   [[nodiscard]] TestResult blind() const { return below(config_.blind_ratio); }
   [[nodiscard]] TestResult reduced() const { return below(1.0); }

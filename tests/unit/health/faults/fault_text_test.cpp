@@ -30,6 +30,9 @@ diagnostics::FaultRecord example() {
   record.latest.speed_mps = 13.9F;
   record.latest.reference_range_m = 100.0F;
   record.latest.lateral_displacement_m = 4.36F;
+  record.latest.lost_coverage_ratio = 0.031F;
+  record.latest.range_loss_ratio = 0.012F;
+  record.latest.velocity_error_mps = 0.61F;
   record.latest.estimate = {1.01F, 0.0436F, 0.0F, 0.0F};
   record.latest.covariance[4] = 1e-6F;  // variance of the yaw
   return dds::to_fault_record(record, vehicle);
@@ -42,6 +45,9 @@ TEST(FaultText, ListsAndShowsARecordWithoutControlCharacters) {
   const std::string page = fault_page(example());
   EXPECT_THAT(page, HasSubstr("yaw                         2.498 ± 0.057°"));
   EXPECT_THAT(page, HasSubstr("4.36 m at 100 m"));
+  EXPECT_THAT(page, HasSubstr("lost coverage               3.1 %"));
+  EXPECT_THAT(page, HasSubstr("loss of range               1.2 %"));
+  EXPECT_THAT(page, HasSubstr("velocity error              0.61 m/s"));
   EXPECT_THAT(page, HasSubstr("13.90 m/s"));
   EXPECT_THAT(list + page, Not(HasSubstr("\x1b")));
 }
