@@ -73,7 +73,7 @@ struct Summary {
 /// `snapshots` in the order of time. Counters may begin at zero again where the monitor was restarted.
 [[nodiscard]] Summary summarise(const std::vector<monitor::Snapshot>& snapshots, const Truth& truth);
 
-/// "front_right: MISALIGNED, yaw +2.512 ± 0.031°, beyond the tolerance of 1.5°".
+/// "front_right: MISALIGNED, " and the explanation of the health service, without one the yaw error.
 [[nodiscard]] std::string verdict_line(const RadarSummary& radar);
 /// "+2.512 ± 0.031°", or a dash without an estimate.
 [[nodiscard]] std::string yaw_text(const monitor::RadarSnapshot& radar);

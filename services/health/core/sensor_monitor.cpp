@@ -131,7 +131,15 @@ void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
         estimate.vehicle_pitch_rad, alignment_axis::kVehiclePitch);
   judge(roll_, AlignmentParameter::kRoll, estimate.alignment_roll_rad, alignment_axis::kRoll, estimate.vehicle_roll_rad,
         alignment_axis::kVehicleRoll);
-  if (estimating) sight_loss_ = sight_loss(sight_, actual_mounting(sight_.mounting_pose, estimate));
+  using namespace alignment_axis;
+  constexpr std::uint32_t kAngles = kYaw | kPitch | kRoll | kVehicleYaw | kVehiclePitch | kVehicleRoll;
+  // As the errors of axes that are not observable any more, the losses stay those last known.
+  if (!estimating || (estimate.observable & kAngles) == 0) return;
+  const Eigen::Matrix3d mounting = actual_mounting(sight_.mounting_pose, estimate);
+  // A solution is published many times, and the losses need a thousand directions.
+  if (mounting == mounting_) return;
+  mounting_ = mounting;
+  sight_loss_ = sight_loss(sight_, mounting);
 }
 
 void SensorMonitor::observe(const AlignmentEstimate& estimate) {
@@ -155,6 +163,7 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
   } else {
     // The angles were computed from a wrong input. No mounting error follows from them.
     for (AngleJudge* angle : {&yaw_, &pitch_, &roll_}) angle->clear();
+    mounting_.setZero();
     sight_loss_ = {};
     drift_ = {};
   }

@@ -60,7 +60,8 @@ class SensorMonitor {
   AngleJudge pitch_;
   AngleJudge roll_;
   Sight sight_;
-  SightLoss sight_loss_;  // by the latest estimate, else that of the last known misalignment
+  Eigen::Matrix3d mounting_ = Eigen::Matrix3d::Zero();  // by the latest estimate that counts; zero without one
+  SightLoss sight_loss_;                                // of it, else of the last known misalignment
   void judge_axes(const AlignmentEstimate& estimate);
   [[nodiscard]] Event event(RadarEvent radar_event) const;
   [[nodiscard]] SensorHealth quantities(std::int64_t now_ns);

@@ -1,4 +1,6 @@
 // What health says after a restart: the last known verdict, or INITIALISING, and never AVAILABLE before a test.
+#include <utility>
+
 #include "services/health/core/faults/codec.hpp"
 #include "tests/unit/health/supervision_bench.hpp"
 
@@ -57,6 +59,11 @@ TEST_F(RestartTest, ARadarBeyondItsLimitStaysNotAvailableUntilItIsClearlyWithin)
   EXPECT_EQ(radar(2).yaw.effect, AxisEffect::kNotAvailable);
   EXPECT_EQ(radar(2).yaw.beyond_limit_probability, 1.0F);
   EXPECT_EQ(radar(2).lost_coverage_ratio, lost) << "as last known";
+  const std::uint32_t observable = std::exchange(estimate_[1].observable, 0u);
+  run(2.0);
+  EXPECT_EQ(radar(2).lost_coverage_ratio, lost) << "an estimate without an observable angle says nothing";
+  expect(2, kNotAvailable, kMisaligned);
+  estimate_[1].observable = observable;
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.9 * kRadiansPerDegree);
   run(5.0);
   expect(2, kNotAvailable, kMisaligned);
