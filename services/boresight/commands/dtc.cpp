@@ -84,7 +84,8 @@ FaultList list_of_file(const DtcOptions& options) {
   health::FaultMemory memory(vehicle, {});
   std::vector<std::uint8_t> bytes(health::kMaxFaultMemoryBytes + 1);
   const runtime::StateBytes read = runtime::read_state_file(options.state, bytes);
-  if (read.kind == runtime::StateBytes::Kind::kMissing) throw std::runtime_error(options.state + ": No such file or directory");
+  if (read.kind == runtime::StateBytes::Kind::kMissing)
+    throw std::runtime_error(options.state + ": No such file or directory");
   if (read.kind == runtime::StateBytes::Kind::kUnreadable) throw std::runtime_error(options.state + ": " + read.reason);
   const auto verdict = health::decode_fault_memory(std::span(bytes).first(read.size), memory);
   if (verdict != health::StoredFaults::kTaken) {

@@ -77,7 +77,8 @@ void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t o
 void HealthWatch::judge(std::int64_t own_ns, bool always, const Report& report) {
   HealthResult verdicts;
   verdicts.number_of_sensors = sensors_.size();
-  for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(*faults_, own_ns, vehicle_frame_);
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    verdicts.sensors[i] = sensors_[i].judge(*faults_, own_ns, vehicle_frame_);
   verdicts.overall = overall_of(verdicts);
   verdicts.load_change = load_change_;
   verdicts.speed_change = speed_change_;

