@@ -4,13 +4,6 @@
 
 namespace boresight::health {
 
-namespace {
-/// A pause between two scans that counts at most: more would give one scan the weight of many.
-constexpr double kLongestStep_s = 0.5;
-/// Share of the deviation at which a test fails, above which it passes: hysteresis.
-constexpr double kPassingShare = 0.7;
-}  // namespace
-
 SightMonitor::SightMonitor(const SightConfig& config)
     : config_(config),
       count_{.level = LearntLevel(config.least_log_count_std)},
@@ -28,7 +21,8 @@ void SightMonitor::observe(const SeenScan& seen, double speed_mps, std::int64_t 
     return;
   }
   const bool is_first = last_ns_ == kNever || time_ns < last_ns_;
-  const double dt_s = is_first ? 0.0 : std::min(static_cast<double>(time_ns - last_ns_) * 1e-9, kLongestStep_s);
+  // A pause counts as the smoothing time at most: more would give one scan the weight of many.
+  const double dt_s = is_first ? 0.0 : std::min(static_cast<double>(time_ns - last_ns_) * 1e-9, config_.smoothing_s);
   last_ns_ = time_ns;
   moved_s_ = is_first ? 0.0 : moved_s_ + dt_s;
   const double share = is_first ? 1.0 : 1.0 - std::exp(-dt_s / config_.smoothing_s);
@@ -47,7 +41,7 @@ TestResult SightMonitor::below(const Quantity& quantity, double ratio) const {
   const double deviation = quantity.level.deviation(quantity.smoothed);
   const double limit = std::min(std::log(ratio), -config_.sigma * quantity.level.std());
   if (deviation < limit) return TestResult::kFailed;
-  return deviation > kPassingShare * limit ? TestResult::kPassed : TestResult::kNone;
+  return deviation > config_.passing_share * limit ? TestResult::kPassed : TestResult::kNone;
 }
 
 TestResult SightMonitor::below(double ratio) const {

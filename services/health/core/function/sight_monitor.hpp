@@ -19,8 +19,9 @@ struct SightConfig {
   double least_log_count_std = 0.7;  ///< of the logarithm of detections from road to road, whatever was learnt (choice)
   double least_log_range_std = 0.5;  ///< of the logarithm of the range (choice)
   double sigma = 3.0;                ///< deviations from the level that are no scene (choice: 99.9 %)
-  double blind_ratio = 0.11;         ///< share of the usual detections or range, below: blind (choice)
-  double unusual_share = 0.05;       ///< weight in learning of what is not usual, so that no error lasts (choice)
+  double passing_share = 0.7;   ///< of the deviation at which a test fails, above which it passes (choice: hysteresis)
+  double blind_ratio = 0.11;    ///< share of the usual detections or range, below: blind (choice)
+  double unusual_share = 0.05;  ///< weight in learning of what is not usual, so that no error lasts (choice)
 };
 
 /// A scan as the monitor sees it.
