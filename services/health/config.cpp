@@ -89,6 +89,7 @@ FileConfig read_config(config::Reader root) {
   g.least_log_count_std = sight.number("least_log_count_std", {0.1, 2.0}, g.least_log_count_std);
   g.least_log_range_std = sight.number("least_log_range_std", {0.1, 2.0}, g.least_log_range_std);
   g.sigma = sight.number("sigma", {2.0, 6.0}, g.sigma);
+  g.range_quantile = sight.number("range_quantile", {0.5, 1.0}, g.range_quantile);
   g.passing_share = sight.number("passing_share", {0.1, 1.0}, g.passing_share);
   g.blind_ratio = sight.number("blind_ratio", {0.01, 0.5}, g.blind_ratio);
   g.unusual_share = sight.number("unusual_share", {0.0, 0.5}, g.unusual_share);

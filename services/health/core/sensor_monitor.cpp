@@ -34,9 +34,9 @@ std::int64_t age_at_arrival_ns(const MessageHeader& header) {
   return is_stamped && arrival_ns > 0 ? std::max<std::int64_t>(0, arrival_ns - header.measurement_time_ns) : -1;
 }
 
-/// Detections that the sensor does not forbid to use, and the range that nine tenths of them do not exceed.
-SeenScan seen_in(const RadarScan& scan) {
-  constexpr double kShare = 0.9;
+/// Detections that the sensor does not forbid to use, and the range that the share `range_quantile` of them does not
+/// exceed.
+SeenScan seen_in(const RadarScan& scan, double range_quantile) {
   std::array<float, kMaxDetections> ranges;
   std::size_t count = 0;
   const std::size_t detections = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
@@ -45,7 +45,7 @@ SeenScan seen_in(const RadarScan& scan) {
   }
   if (count == 0) return {};
   const auto end = ranges.begin() + static_cast<std::ptrdiff_t>(count);
-  const auto nth = ranges.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(count - 1));
+  const auto nth = ranges.begin() + static_cast<std::ptrdiff_t>(range_quantile * static_cast<double>(count - 1));
   std::nth_element(ranges.begin(), nth, end);
   return {.detections = static_cast<double>(count), .range_m = static_cast<double>(*nth)};
 }
@@ -107,7 +107,7 @@ void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
   received_.add(now_ns);
   if ((scan.integrity & (kFrozen | kRepeated)) != 0) frozen_.add(now_ns);
   if ((scan.integrity & kContradictsEgo) != 0) contradicting_.add(now_ns);
-  const SeenScan seen = seen_in(scan);
+  const SeenScan seen = seen_in(scan, config_.sight.range_quantile);
   sight_monitor_.observe(seen, speed_mps_, now_ns);
   constexpr double kSmoothing = 0.1;
   detections_per_scan_ = delivery_.scans() == 1

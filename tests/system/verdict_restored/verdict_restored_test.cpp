@@ -135,7 +135,7 @@ TEST_F(VerdictRestored, OverAKillOfHealthAndOfRouDiAndANewStart) {
   Subscriber subscriber(dds_);
   ASSERT_TRUE(domain_->until(5.0, [&] { return subscriber.size() > 0; }));
 
-  // The code is on DDS, and whoever does not know the secret cannot clear it.
+  // The trouble code is published on DDS. A command that is signed with another secret does not clear it.
   EXPECT_THAT(dtc("list"), HasSubstr("C1D02-78  radar front_right"));
   EXPECT_THAT(dtc("show C1D02-78"), HasSubstr("lateral displacement"));
   std::ofstream("/tmp/other.key") << std::string(64, 'x');

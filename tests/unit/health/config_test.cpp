@@ -36,6 +36,7 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(s.sight.least_log_count_std, expected.sight.least_log_count_std);
   EXPECT_EQ(s.sight.least_log_range_std, expected.sight.least_log_range_std);
   EXPECT_EQ(s.sight.sigma, expected.sight.sigma);
+  EXPECT_EQ(s.sight.range_quantile, expected.sight.range_quantile);
   EXPECT_EQ(s.sight.passing_share, expected.sight.passing_share);
   EXPECT_EQ(s.sight.blind_ratio, expected.sight.blind_ratio);
   EXPECT_EQ(s.sight.unusual_share, expected.sight.unusual_share);

@@ -12,13 +12,15 @@
 namespace boresight::health {
 
 struct SightConfig {
-  double least_speed_mps = 5.0;      ///< slower, a wall or a vehicle ahead may fill the view for long (choice)
-  double smoothing_s = 1.0;          ///< time constant of what is seen now (choice: a verdict within two seconds)
+  double least_speed_mps = 5.0;  ///< slower, a wall or a vehicle ahead may fill the view for long (choice)
+  double smoothing_s =
+      1.0;  ///< of detections and range, before they are compared with the level (choice: verdict in two seconds)
   double learning_s = 10.0;          ///< motion until the level is known (choice)
   double memory_s = 600.0;           ///< motion over which the level is learnt (choice: longer than one kind of road)
   double least_log_count_std = 0.7;  ///< of the logarithm of detections from road to road, whatever was learnt (choice)
   double least_log_range_std = 0.5;  ///< of the logarithm of the range (choice)
   double sigma = 3.0;                ///< deviations from the level that are no scene (choice: 99.9 %)
+  double range_quantile = 0.9;  ///< share of the detections that the range of a scan covers (choice: not one stray)
   double passing_share = 0.7;   ///< of the deviation at which a test fails, above which it passes (choice: hysteresis)
   double blind_ratio = 0.11;    ///< share of the usual detections or range, below: blind (choice)
   double unusual_share = 0.05;  ///< weight in learning of what is not usual, so that no error lasts (choice)
@@ -27,7 +29,8 @@ struct SightConfig {
 /// A scan as the monitor sees it.
 struct SeenScan {
   double detections = 0.0;
-  double range_m = 0.0;  ///< that nine tenths of the detections do not exceed; not used without detections
+  double range_m =
+      0.0;  ///< that the share `range_quantile` of the detections does not exceed; not used without detections
 };
 
 /// Level of one quantity: the mean and the variance of its smoothed logarithm, learnt with a fading memory.
