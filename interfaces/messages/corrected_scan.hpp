@@ -16,6 +16,8 @@ inline constexpr std::uint32_t kNoTracks = 1u << 5;     ///< the ghost filter ha
 inline constexpr std::uint32_t kTracksStale = 1u << 6;  ///< the ghost filter's tracks were older than their deadline
 /// Earlier scans of this radar were dropped: they waited for a stage when this scan arrived.
 inline constexpr std::uint32_t kScansDropped = 1u << 7;
+/// The radar's data are proven wrong: all detections are rejected, and the scan is no evidence of empty space either.
+inline constexpr std::uint32_t kDistrusted = 1u << 8;
 }  // namespace pipeline_flag
 
 /// Bits of `CorrectedScan::detection_flags`, per detection.

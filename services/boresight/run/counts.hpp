@@ -10,7 +10,7 @@
 
 namespace boresight::run {
 
-inline constexpr std::size_t kNumberOfPipelineFlags = 8;
+inline constexpr std::size_t kNumberOfPipelineFlags = 9;
 
 /// Why the corrector rejected a detection; the first that applies.
 enum class Rejection : std::uint8_t { kNone, kInvalid, kOutsideRegion, kWeak };

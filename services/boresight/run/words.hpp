@@ -7,9 +7,9 @@
 namespace boresight::run {
 
 /// By bit of pipeline_flag.
-inline constexpr std::array<std::string_view, 8> kFlagWords = {"no_alignment",     "alignment_stale", "no_ego_motion",
+inline constexpr std::array<std::string_view, 9> kFlagWords = {"no_alignment",     "alignment_stale", "no_ego_motion",
                                                                "ego_motion_stale", "no_elevation",    "no_tracks",
-                                                               "tracks_stale",     "scans_dropped"};
+                                                               "tracks_stale",     "scans_dropped",   "distrusted"};
 /// By Provenance.
 inline constexpr std::array<std::string_view, 7> kOriginWords = {
     "unknown", "moving", "stationary", "ghost_type_1", "ghost_type_2", "clutter", "ambiguity"};
