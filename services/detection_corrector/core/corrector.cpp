@@ -8,6 +8,7 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/detection_corrector/core/ego_velocity.hpp"
 #include "services/detection_corrector/core/stationary_test.hpp"
+#include "services/detection_corrector/core/trust.hpp"
 
 namespace boresight::corrector {
 
@@ -109,6 +110,8 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
   if (!ego.valid) out.flags |= pipeline_flag::kNoEgoMotion;
   if (ego.valid && ego.stale) out.flags |= pipeline_flag::kEgoMotionStale;
   if (!scan.has(scan_field::kElevation)) out.flags |= pipeline_flag::kNoElevation;
+  const bool is_wrong = is_scan_wrong(scan) || (latest.present && places_detections_wrongly(latest.estimate.finding));
+  if (is_wrong) out.flags |= pipeline_flag::kDistrusted;
   const EgoVelocity motion =
       compensates ? ego_velocity(ego, vehicle_.ego, radar->mounting_pose, mounting)
                   : EgoVelocity{0.0, 0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
@@ -132,7 +135,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     const bool finite = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]) &&
                         std::isfinite(elevation) && std::isfinite(scan.range_rate_mps[i]) && scan.range_m[i] >= 0.0F;
     std::uint16_t flags = 0;
-    const bool usable = finite && (scan.detection_flags[i] & detection_flag::kUnusable) == 0;
+    const bool usable = finite && !is_wrong && (scan.detection_flags[i] & detection_flag::kUnusable) == 0;
     if (!usable) flags |= corrected_flag::kInvalid;
     if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kDoubted;
     if ((scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) flags |= corrected_flag::kAmbiguous;

@@ -30,8 +30,9 @@ class Corrector {
   /// Whether the radar is in the vehicle file, as correct() requires.
   [[nodiscard]] bool knows(std::uint32_t radar_id) const { return vehicle_.radar(radar_id) != nullptr; }
 
-  /// Writes everything of `out` except the header. `out.flags` names missing side inputs. A scan of an unknown radar
-  /// gives an empty output. Learns the radar's range-rate noise from the scan, for the scans after it.
+  /// Writes everything of `out` except the header. `out.flags` names missing side inputs. All detections of a scan that
+  /// is proven wrong are invalid. A scan of an unknown radar gives an empty output. Learns the radar's range-rate noise
+  /// from the scan, for the scans after it.
   void correct(const RadarScan& scan, CorrectedScan& out);
 
   /// Learnt ratio of actual to stated std of a radar's range rates; 1 for an unknown radar.

@@ -169,10 +169,13 @@ void EvidenceFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
   gather(scan, count, out);
   map_.update(time_ns);
-  counter_.count(time_ns, candidates_, counts_);
-  const bool tracks_are_known = has_tracks(time_ns, out);
-  expect(scan, tracks_are_known);
-  judge(scan, tracks_are_known, out);
+  // A distrusted scan has no candidates, and must not count as a scan in which others are missing.
+  if ((scan.flags & pipeline_flag::kDistrusted) == 0) {
+    counter_.count(time_ns, candidates_, counts_);
+    const bool tracks_are_known = has_tracks(time_ns, out);
+    expect(scan, tracks_are_known);
+    judge(scan, tracks_are_known, out);
+  }
   write_segments(map_.reflectors(), odometry_, out);
 }
 

@@ -196,6 +196,33 @@ TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
   EXPECT_EQ(out_->geometry.ego_speed_mps, 0.0F);
 }
 
+TEST_F(CorrectorTest, ScanThatIsProvenWrongIsDistrustedAndItsDetectionsAreInvalid) {
+  using namespace scan_integrity;
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(20.0F, 0.0F));
+  add(50.0, 0.0, 0.0, -20.0);
+  const auto is_distrusted = [&] {
+    corrector.correct(*scan_, *out_);
+    const bool is_invalid = out_->detection_flags[0] == corrected_flag::kInvalid;
+    EXPECT_EQ((out_->flags & pipeline_flag::kDistrusted) != 0, is_invalid);
+    return is_invalid;
+  };
+  EXPECT_FALSE(is_distrusted());
+  for (std::size_t bit = 0; bit < kNumberOfBits; ++bit) {
+    scan_->integrity = static_cast<std::uint16_t>(1U << bit);
+    EXPECT_EQ(is_distrusted(), (scan_->integrity & (kRepeated | kFrozen | kContradictsEgo | kImpossibleCopies)) != 0);
+  }
+  scan_->integrity = 0;
+  AlignmentEstimate estimate = yaw_estimate(0.0, 1.0);
+  for (const auto& [finding, is_wrong] :
+       {std::pair{AlignmentFinding::kAzimuthMirrored, true}, std::pair{AlignmentFinding::kRadarsSwapped, true},
+        std::pair{AlignmentFinding::kSpeedUnit, false}, std::pair{AlignmentFinding::kNone, false}}) {
+    estimate.finding = finding;
+    ASSERT_TRUE(corrector.add_alignment(estimate));
+    EXPECT_EQ(is_distrusted(), is_wrong) << static_cast<int>(finding);
+  }
+}
+
 TEST_F(CorrectorTest, NonFiniteValuesAreInvalidAndDoNotAffectOthers) {
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(10.0F, 0.0F));

@@ -98,6 +98,30 @@ TEST_P(TrackerLimits, FlagsOfTheScanGoOn) {
   EXPECT_EQ(list().flags, pipeline_flag::kNoTracks | pipeline_flag::kNoAlignment);
 }
 
+TEST_P(TrackerLimits, DistrustedScansAreNeitherDetectionsNorEmptySpace) {
+  drive(kCarAhead, 20);
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  const Track before = list_->tracks[0];
+  const Moving ghost{{30.0, 6.0}, {8.0, 0.0}};
+  for (int i = 1; i <= 10; ++i) {
+    scene_.begin(now_);
+    scene_.scan->flags = pipeline_flag::kDistrusted;
+    add(ghost.after(kScan_s * i));
+    take();
+    EXPECT_EQ(list().number_of_tracks, 1u) << "no birth from wrong data";
+  }
+  const Track& track = list_->tracks[0];
+  EXPECT_EQ(track.update, TrackUpdate::kPredicted);
+  EXPECT_NEAR(track.position_vehicle_m[0], before.position_vehicle_m[0] + 0.5F * before.velocity_over_ground_mps[0],
+              0.3);
+  EXPECT_GT(track.existence_probability, before.existence_probability * std::exp(-0.5))
+      << "only the life of objects counts";
+  for (int i = 0; i < 10; ++i) step_empty();
+  EXPECT_LT(list().number_of_confirmed_tracks == 0 ? 0.0F : list_->tracks[0].existence_probability,
+            track.existence_probability)
+      << "the same scans without the flag are evidence of empty space";
+}
+
 TEST_P(TrackerLimits, AllocatesNothing) {
   const std::uint64_t before = runtime::counted_allocations();
   {

@@ -93,6 +93,8 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   places_.clear();
   radar_ = nullptr;
   radar_index_ = -1;
+  // A radar whose data are proven wrong sees nothing: neither detections nor empty space.
+  if ((scan.flags & pipeline_flag::kDistrusted) != 0) return;
   for (std::size_t k = 0; k < radars_.size(); ++k) {
     if (radars_[k].id != scan.header.source_id) continue;
     radar_ = &radars_[k];
