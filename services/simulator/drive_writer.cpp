@@ -17,6 +17,7 @@
 #include "services/simulator/text_file.hpp"
 #include "services/simulator/truth_tables.hpp"
 #include "services/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/wire/data_faults.hpp"
 #include "services/simulator/wire/pcap_writer.hpp"
 #include "services/simulator/wire/toyota_encoder.hpp"
 
@@ -75,6 +76,9 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
   for (const RadarInterference& i : e.interference) {
     if (i.radar != 0) expect_radar(vehicle, e, i.radar, "interference");
   }
+  for (const RadarDataFault& f : e.data_faults) {
+    if (f.radar != 0) expect_radar(vehicle, e, f.radar, "data_fault");
+  }
   for (const ProfileOfRadar& other : e.profiles) expect_radar(vehicle, e, other.id, "profile_of");
 }
 
@@ -98,15 +102,15 @@ class RadarLog {
  public:
   explicit RadarLog(const std::filesystem::path& file) : pcap_(file) {}
 
-  /// Adds a detection list. A status message follows when the radar's condition has changed, and at least once a
-  /// second. Events come in the order of measurement.
-  void add(const Event& event, const RadarConfig& radar, const radar::LatencySpec& latency) {
+  /// Adds the list that the radar sends for the event. A status message follows when the radar's condition has changed,
+  /// and at least once a second. Events come in the order of measurement.
+  void add(const Event& event, const RadarScan& list, const RadarConfig& radar, const radar::LatencySpec& latency) {
     write_until(event.time_ns);
     Pending& p = open_slot();
     p.from = endpoint(radar.source.sender, radar.source.port);
     p.to = endpoint(radar.source.address, radar.source.port);
-    p.sent_ns = event.stamp_ns + latency_ns(latency, event.scan->number_of_valid_detections);
-    wire::encode_ars548(*event.scan, event.stamp_ns, *p.list);
+    p.sent_ns = event.stamp_ns + latency_ns(latency, list.number_of_valid_detections);
+    wire::encode_ars548(list, event.stamp_ns, *p.list);
     Status& last = last_status_.at(radar.id);
     p.condition = event.condition;
     p.with_status =
@@ -175,6 +179,7 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
                    folder / "truth_visibility.csv",
                    0,
                    0};
+  wire::DataFaults faults(scenario.effects.data_faults, seed);
   RadarLog radars(files.radars);
   const TextFile ego(files.ego);
   TruthTables truth(folder, scenario, vehicle, seed);
@@ -190,7 +195,10 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
       continue;
     }
     const RadarConfig& radar = *vehicle.radar(event->scan->header.source_id);
-    radars.add(*event, radar, scenario.effects.profile_of(radar.id).latency);
+    const wire::SentList sent = faults.apply(*event->scan, radar, event->t_s);
+    for (std::uint32_t i = 0; i < sent.times; ++i) {
+      radars.add(*event, *sent.scan, radar, scenario.effects.profile_of(radar.id).latency);
+    }
     truth.add_scan(drive, *event);
     ++files.scans;
     files.number_of_detections += event->truth->size();

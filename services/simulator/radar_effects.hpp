@@ -50,6 +50,28 @@ struct RadarInterference {
   [[nodiscard]] bool operator==(const RadarInterference&) const = default;
 };
 
+/// Damage to the lists that a radar sends.
+enum class DataFaultKind : std::uint8_t {
+  kFew,              ///< only the first `detections` of each list
+  kNear,             ///< nothing beyond `reach_m`, as behind ice or mud
+  kLost,             ///< lists are not sent, with probability `share`
+  kFrozen,           ///< the first list again and again, with new counters and stamps
+  kRepeated,         ///< each list twice
+  kMirroredAzimuth,  ///< the sign of the azimuths is wrong, as of a radar that was mounted upside down
+  kRandom,           ///< range, azimuth and range rate at random within the limits of the radar
+};
+
+struct RadarDataFault {
+  std::uint32_t radar = 0;  ///< 0: all
+  DataFaultKind kind = DataFaultKind::kFew;
+  double begin_s = 0.0;
+  double duration_s = 0.0;
+  std::uint32_t detections = 0;
+  double reach_m = 8.0;
+  double share = 0.8;
+  [[nodiscard]] bool operator==(const RadarDataFault&) const = default;
+};
+
 /// Propagation paths that include reflections from mirrors.
 struct MultipathSpec {
   bool on = true;
@@ -106,6 +128,7 @@ struct RadarEffects {
   std::vector<RadarStepChange> step_changes;
   std::vector<RadarBlockage> blockages;
   std::vector<RadarInterference> interference;
+  std::vector<RadarDataFault> data_faults;
   double clutter_per_scan = 1.5;  ///< mean number
   MultipathSpec multipath{};
   ResolutionCell resolution{};

@@ -55,6 +55,27 @@ RadarInterference read_interference(Reader reader, RadarEffects& effects) {
   return i;
 }
 
+RadarDataFault read_data_fault(Reader reader, RadarEffects& effects) {
+  RadarDataFault f;
+  f.radar = read_radar(reader, effects, true);
+  reader.require("kind");
+  f.kind = reader.choice<DataFaultKind>("kind",
+                                        {{"few", DataFaultKind::kFew},
+                                         {"near", DataFaultKind::kNear},
+                                         {"lost", DataFaultKind::kLost},
+                                         {"frozen", DataFaultKind::kFrozen},
+                                         {"repeated", DataFaultKind::kRepeated},
+                                         {"mirrored_azimuth", DataFaultKind::kMirroredAzimuth},
+                                         {"random", DataFaultKind::kRandom}},
+                                        f.kind);
+  f.begin_s = reader.number("begin_s", kTime_s, f.begin_s);
+  f.duration_s = reader.number("duration_s", kTime_s, f.duration_s);
+  f.detections = static_cast<std::uint32_t>(reader.integer("detections", {0, kMaxDetections}, f.detections));
+  f.reach_m = reader.number("reach_m", {0.0, 1000.0}, f.reach_m);
+  f.share = reader.number("share", {0.0, 1.0}, f.share);
+  return f;
+}
+
 MultipathSpec read_multipath(Reader reader) {
   MultipathSpec m;
   m.on = reader.boolean("on", m.on);
@@ -121,6 +142,7 @@ RadarEffects read_effects(Reader reader) {
   }
   for (Reader& r : reader.tables("blockage")) e.blockages.push_back(read_blockage(r, e));
   for (Reader& r : reader.tables("interference")) e.interference.push_back(read_interference(r, e));
+  for (Reader& r : reader.tables("data_fault")) e.data_faults.push_back(read_data_fault(r, e));
   e.multipath = read_multipath(reader.table("multipath"));
   e.resolution = read_resolution(reader.table("resolution"));
   e.sensitivity = read_sensitivity(reader.table("sensitivity"));

@@ -78,6 +78,7 @@ misalignment = [{radar = 2, yaw_deg = 90e-1}]
 step_change = [{radar = 1, time_s = 3.0, pitch_deg = 1.0}]
 blockage = [{radar = 3, begin_s = 1.0, full_s = 9.0, loss_db = 20.0, azimuth_min_deg = 0.0}]
 interference = [{begin_s = 2.0, duration_s = 0.5, noise_rise_db = 10.0, detections_per_scan = 20.0}]
+data_fault = [{kind = "near", begin_s = 3.0, duration_s = 2.0, reach_m = 6.0}]
 multipath = {on = true, max_bounces = 2, ground_bounce = false}
 resolution = {range_m = 0.5, azimuth_deg = 3.0}
 sensitivity = {threshold_db = -30.0, max_detections = 200}
@@ -107,6 +108,7 @@ sensitivity = {threshold_db = -30.0, max_detections = 200}
   EXPECT_EQ(s.effects.blockages.at(0).azimuth_min_rad, 0.0);
   EXPECT_EQ(s.effects.blockages.at(0).azimuth_max_rad, RadarBlockage{}.azimuth_max_rad);
   EXPECT_EQ(s.effects.interference.at(0).radar, 0u);
+  EXPECT_EQ(s.effects.data_faults.at(0), (RadarDataFault{0, DataFaultKind::kNear, 3.0, 2.0, 0, 6.0}));
   EXPECT_EQ(s.effects.multipath.max_bounces, 2u);
   EXPECT_NEAR(s.effects.resolution.azimuth_rad, 3.0 * M_PI / 180.0, 1e-12);
   EXPECT_EQ(s.effects.sensitivity.max_detections, 200u);

@@ -77,6 +77,7 @@ const std::map<std::string, Table>& tables() {
       {"radars.step_change", {name + "[radars]\nstep_change = [", radar, true, "]"}},
       {"radars.blockage", {name + "[radars]\nblockage = [", radar, true, "]"}},
       {"radars.interference", {name + "[radars]\ninterference = [", {}, true, "]"}},
+      {"radars.data_fault", {name + "[radars]\ndata_fault = [", {{"kind", "\"few\""}}, true, "]"}},
       {"radars.multipath", {name + "[radars]\nmultipath = ", {}, true, ""}},
       {"radars.resolution", {name + "[radars]\nresolution = ", {}, true, ""}},
       {"radars.sensitivity", {name + "[radars]\nsensitivity = ", {}, true, ""}},
