@@ -53,7 +53,7 @@ const std::vector<Kind>& kinds() {
       {"few detections", "kind = \"few\"\ndetections = 3", blind},
       {"near only", "kind = \"near\"\nreach_m = 8.0", blind},
       {"80 % lost", "kind = \"lost\"\nshare = 0.8", {"RATE_REDUCED", "NO_DATA"}},
-      {"mirrored azimuth", "kind = \"mirrored_azimuth\"", {"WRONG_INPUT"}},
+      {"mirrored azimuth", "kind = \"mirrored_azimuth\"", {"WRONG_INPUT", "INVALID_DATA"}},
       {"frozen", "kind = \"frozen\"", {"INVALID_DATA"}},
       {"repeated", "kind = \"repeated\"", {"INVALID_DATA"}},
       {"random", "kind = \"random\"", {"INVALID_DATA", "WRONG_INPUT", "EXTERNAL_DISTURBANCE"}},
@@ -63,7 +63,7 @@ const std::vector<Kind>& kinds() {
 }
 
 struct Arguments {
-  std::vector<std::string> scenarios{"demo_drive", "straight_rail", "tunnel", "truck_overtaking"};
+  std::vector<std::string> scenarios{"aligned_drive", "straight_rail", "tunnel", "truck_overtaking"};
   std::vector<std::string> profiles{"series_77ghz", "can_cluster", "ideal"};
   std::vector<std::string> only;
   std::size_t seeds = 1, jobs = 2;
