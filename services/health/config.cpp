@@ -71,6 +71,7 @@ FileConfig read_config(config::Reader root) {
   d.min_rate_ratio = supervision.number("min_rate_ratio", {0.1, 0.95}, d.min_rate_ratio);
   d.max_rate_ratio = supervision.number("max_rate_ratio", {1.05, 3.0}, d.max_rate_ratio);
   d.pauses_window_s = supervision.number("pauses_window_s", {1.0, 30.0}, d.pauses_window_s);
+  d.judged_scans = supervision.number("judged_scans", {2.0, 100.0}, d.judged_scans);
   d.most_pauses = static_cast<std::uint64_t>(
       supervision.integer("most_pauses", {1.0, 20.0}, static_cast<std::int64_t>(d.most_pauses)));
   d.silence_scans = supervision.number("silence_scans", {3.0, 20.0}, d.silence_scans);

@@ -46,6 +46,10 @@ class RateWindow {
     advance(now_ns);
     return first_slot_ >= 0 && slot_ - first_slot_ > kSlots;
   }
+  /// Time since the first event; 0 without one.
+  [[nodiscard]] double age_s(std::int64_t now_ns) const {
+    return first_slot_ < 0 ? 0.0 : static_cast<double>(now_ns - first_ns_) * 1e-9;
+  }
   /// Forgets everything: the source starts again.
   void clear() {
     counts_ = {};

@@ -25,6 +25,7 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(s.delivery.min_rate_ratio, expected.delivery.min_rate_ratio);
   EXPECT_EQ(s.delivery.max_rate_ratio, expected.delivery.max_rate_ratio);
   EXPECT_EQ(s.delivery.pauses_window_s, expected.delivery.pauses_window_s);
+  EXPECT_EQ(s.delivery.judged_scans, expected.delivery.judged_scans);
   EXPECT_EQ(s.delivery.most_pauses, expected.delivery.most_pauses);
   EXPECT_EQ(s.delivery.silence_scans, expected.delivery.silence_scans);
   EXPECT_EQ(s.delivery.latency_budget_s, expected.delivery.latency_budget_s);

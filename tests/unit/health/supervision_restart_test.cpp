@@ -42,6 +42,8 @@ TEST_F(RestartTest, AMisalignedRadarStaysMisalignedFromTheFirstReportOn) {
   expect(1, kNotAvailable, kInitialising);
   run(0.3);
   expect(2, kAvailableReduced, kMisaligned);
+  expect(1, kNotAvailable, kInitialising);
+  run(0.5);
   expect(1, kAvailable, kNormal);
   run(5.0);
   expect(2, kAvailableReduced, kMisaligned);

@@ -55,9 +55,9 @@ TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableSoonAf
 
 TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
   scan_every_ = 10;
-  run(1.5);
-  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable) << "not judged before a window has passed";
-  run(3.5);
+  run(0.4);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInitialising) << "ten scans were not due yet";
+  run(4.6);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailableReduced);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kRateReduced);
   scan_every_ = 5;

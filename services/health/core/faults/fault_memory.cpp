@@ -19,7 +19,7 @@ std::size_t slot_of(Event event) {
 std::array<DebounceTimes, kNumberOfEventKinds> FaultMemoryConfig::default_debounce() {
   std::array<DebounceTimes, kNumberOfEventKinds> times{};
   const auto set = [&times](EventKind kind, DebounceTimes value) { times[static_cast<std::size_t>(kind)] = value; };
-  set(kind_of(RadarEvent::kNoData), {.set_s = 0.0, .clear_s = 1.0});
+  set(kind_of(RadarEvent::kNoData), {.set_s = 0.0, .clear_s = 0.5});
   for (const RadarEvent event : {RadarEvent::kFrozen, RadarEvent::kEgoContradiction}) {
     set(kind_of(event), {.set_s = 0.2, .clear_s = 2.0});
   }

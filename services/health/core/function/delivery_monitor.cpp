@@ -19,7 +19,7 @@ DeliveryMonitor::DeliveryMonitor(const DeliveryConfig& config, double expected_r
       silence_limit_ns_(deadline_ns_),
       budget_ns_(nanoseconds(config.latency_budget_s + latency_s)),
       start_ns_(start_ns),
-      rate_(std::max(window_s, 10.0 / expected_rate_hz)),
+      rate_(std::max(window_s, config.judged_scans / expected_rate_hz)),
       arrivals_(config.pauses_window_s),
       pauses_(config.pauses_window_s),
       dated_(window_s),
@@ -49,14 +49,15 @@ std::int64_t DeliveryMonitor::silence_limit_ns(std::int64_t now_ns) {
   return std::max(deadline_ns_, nanoseconds(config_.silence_scans * interval_s));
 }
 
-TestResult DeliveryMonitor::silent(std::int64_t now_ns) const {
+TestResult DeliveryMonitor::silent(std::int64_t now_ns) {
   if (scans_ == 0) return now_ns - start_ns_ > deadline_ns_ ? TestResult::kFailed : TestResult::kNone;
-  return result_of(now_ns - last_ns_ > silence_limit_ns_);
+  if (now_ns - last_ns_ > silence_limit_ns_) return TestResult::kFailed;
+  return is_rate_known(now_ns) || is_intermittent(now_ns) ? TestResult::kPassed : TestResult::kNone;
 }
 
 TestResult DeliveryMonitor::rate_reduced(std::int64_t now_ns) {
   if (is_intermittent(now_ns)) return TestResult::kFailed;
-  if (!delivers(now_ns) || !rate_.is_full(now_ns)) return TestResult::kNone;
+  if (!delivers(now_ns) || !is_rate_known(now_ns)) return TestResult::kNone;
   return result_of(rate_.rate_hz(now_ns) < config_.min_rate_ratio * expected_rate_hz_);
 }
 

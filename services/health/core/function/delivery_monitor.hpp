@@ -14,6 +14,7 @@ struct DeliveryConfig {
   double max_rate_ratio = 1.3;    ///< one that delivers more than this share has a second sender (choice)
   double pauses_window_s = 5.0;   ///< in which pauses beyond the deadline are counted (choice)
   std::uint64_t most_pauses = 2;  ///< more of them are an intermittent radar, which is RATE_REDUCED (choice)
+  double judged_scans = 10.0;     ///< scans that must be due before a rate is judged (choice: one is a tenth)
   double silence_scans = 7.0;  ///< mean intervals of an intermittent radar that are a silence (choice: 0.1 % by chance)
   double latency_budget_s = 0.15;  ///< from measurement to arrival, beside the radar's own latency (choice)
   double max_delayed_ratio = 0.2;  ///< a larger share of scans beyond the budget is DELAYED (choice)
@@ -30,8 +31,9 @@ class DeliveryMonitor {
 
   /// True if a scan arrived within the radar's deadline.
   [[nodiscard]] bool delivers(std::int64_t now_ns) const { return scans_ > 0 && now_ns - last_ns_ <= deadline_ns_; }
-  /// Nothing for longer than the deadline; for an intermittent radar, than its pauses explain.
-  [[nodiscard]] TestResult silent(std::int64_t now_ns) const;
+  /// Nothing for longer than the deadline; for an intermittent radar, than its pauses explain. After a silence it
+  /// passes only with a known rate: otherwise a radar that loses most scans would seem sound in between.
+  [[nodiscard]] TestResult silent(std::int64_t now_ns);
   [[nodiscard]] TestResult rate_reduced(std::int64_t now_ns);
   [[nodiscard]] TestResult rate_too_high(std::int64_t now_ns);
   [[nodiscard]] TestResult delayed(std::int64_t now_ns);
@@ -45,6 +47,10 @@ class DeliveryMonitor {
 
  private:
   [[nodiscard]] std::int64_t silence_limit_ns(std::int64_t now_ns);
+  /// Since the last silence, enough scans were due.
+  [[nodiscard]] bool is_rate_known(std::int64_t now_ns) {
+    return rate_.age_s(now_ns) * expected_rate_hz_ >= config_.judged_scans;
+  }
   [[nodiscard]] bool is_intermittent(std::int64_t now_ns) { return pauses_.sum(now_ns) > config_.most_pauses; }
 
   DeliveryConfig config_;

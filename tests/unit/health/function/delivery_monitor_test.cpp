@@ -83,6 +83,21 @@ TEST_F(DeliveryMonitorTest, ASinglePauseIsNoReducedRate) {
   }
 }
 
+TEST_F(DeliveryMonitorTest, AfterASilenceItIsNotSoundBeforeItsRateIsKnown) {
+  run(5.0);
+  run(1.0, 0.0);
+  ASSERT_EQ(monitor_.silent(now_ns_), TestResult::kFailed);
+  for (int i = 0; i < 12; ++i) {  // every fourth scan arrives, without a pause beyond the deadline
+    run(0.05, 1.0);
+    if (i < 3) {
+      EXPECT_EQ(monitor_.silent(now_ns_), TestResult::kNone) << "the rate is not known yet";
+    }
+    run(0.15, 0.0);
+  }
+  EXPECT_EQ(monitor_.silent(now_ns_), TestResult::kPassed);
+  EXPECT_EQ(monitor_.rate_reduced(now_ns_), TestResult::kFailed);
+}
+
 TEST_F(DeliveryMonitorTest, TwiceTheRateIsTooHigh) {
   run(5.0);
   run(3.0, 1.0, 2);
