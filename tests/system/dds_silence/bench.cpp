@@ -7,6 +7,7 @@
 
 #include "services/health/core/faults/event.hpp"
 #include "services/health/core/faults/status.hpp"
+#include "services/health/dds/topics.hpp"
 #include "tests/system/harness/domain.hpp"
 
 namespace boresight::dds {

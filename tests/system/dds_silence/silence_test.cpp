@@ -71,7 +71,7 @@ TEST_F(DdsSilence, AnUnpluggedEcuIsStaleWithinTwoSecondsAndBackWithItsCable) {
   start_health(R"(["127.0.0.1", "radar0"])");
   hosts().as(network::Host::kSensors, [&] { tool_ = std::make_unique<Tool>(config({network::kServerInterface})); });
   ASSERT_TRUE(all_present()) << "an interface is given by its name";
-  FaultMemoryClient on_ecu(config({"127.0.0.1"}));
+  FaultMemoryClient on_ecu(config({"127.0.0.1", network::kEcuInterface}));
   EXPECT_TRUE(mute_becomes(false, on_ecu, 10.0));
   hosts().cut_cable();
   EXPECT_TRUE(all_absent());
