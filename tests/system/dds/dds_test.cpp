@@ -138,6 +138,21 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(statuses[7].level_(), 3) << "silent";
 }
 
+TEST(Dds, EveryRadarOfALargeVehicleArrives) {
+  HealthReport many = report();
+  many.number_of_sensors = kMaxRadars;
+  for (std::uint32_t i = 0; i < kMaxRadars; ++i) many.sensors[i].radar_id = i + 1;
+  Participant participant(kConfig, "test");
+  DiagnosticsWriter writer(participant, vehicle());
+  ASSERT_TRUE(writer.write(many, kTime_ns)) << "the middleware's default is ten instances";
+  Received received;
+  const DiagnosticsReader reader(kConfig, received.callbacks);
+  EXPECT_TRUE(harness::eventually(10.0, [&] {
+    const std::lock_guard lock(received.mutex);
+    return received.sensors.size() == kMaxRadars;
+  }));
+}
+
 TEST(Dds, LeavesNothingInSharedMemory) {
   {
     Participant participant(kConfig, "test");
