@@ -1,4 +1,4 @@
-// Domain, interfaces and topics of the diagnostics.
+// Domain and interfaces of the diagnostics. The topics are in topics.hpp.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,12 @@ namespace boresight::dds {
 struct Config {
   bool enabled = true;
   std::uint32_t domain = 0;
-  std::vector<std::string> interfaces;  ///< IPv4 addresses; empty: all
+  /// Names or IPv4 addresses of network interfaces, or "all". By default no other machine can listen or interfere.
+  std::vector<std::string> interfaces = {"127.0.0.1"};
   double period_s = 1.0;
+  double farewell_s = 0.2;  ///< longest time that the end of the service waits for readers to learn of it
   /// File with the secret of those who may command; "": nobody may.
   std::string command_key_file;
 };
-
-inline constexpr const char* kSensorHealthTopic = "boresight/sensor_health";
-inline constexpr const char* kSystemHealthTopic = "boresight/system_health";
-inline constexpr const char* kDiagnosticsTopic = "rt/diagnostics";
-inline constexpr const char* kFaultRecordTopic = "boresight/fault_memory";
-inline constexpr const char* kFaultMemoryStateTopic = "boresight/fault_memory_state";
-inline constexpr const char* kCommandTopic = "boresight/fault_memory_command";
-inline constexpr const char* kCommandReplyTopic = "boresight/fault_memory_reply";
 
 }  // namespace boresight::dds

@@ -17,9 +17,6 @@ namespace {
 
 namespace fast = eprosima::fastdds::dds;
 
-constexpr int kLatestOfEachEvent = 1;
-constexpr int kReceivedReplies = 16;
-
 /// Calls `take(sample, is_alive)` for each sample that waits.
 template <typename Sample, typename Take>
 void take_all(fast::DataReader& reader, const Take& take) {
@@ -36,14 +33,13 @@ class FaultMemoryClient::Entities {
  public:
   explicit Entities(const Config& config)
       : participant(config, "boresight"),
-        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), kLatestOfEachEvent,
+        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(kFaultRecordTopic),
                                    nullptr)),
-        state(
-            participant.reader(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), 1, nullptr)),
-        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), kReceivedReplies,
+        state(participant.reader(kFaultMemoryStateTopic,
+                                 guarded<diagnostics::FaultMemoryStatePubSubType>(kFaultMemoryStateTopic), nullptr)),
+        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(kCommandReplyTopic),
                                    nullptr)),
-        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), 1,
-                                    Participant::Durability::kVolatile)) {}
+        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(kCommandTopic))) {}
 
   Participant participant;
   fast::DataReader& records;
@@ -58,7 +54,8 @@ FaultMemoryClient::~FaultMemoryClient() = default;
 void FaultMemoryClient::poll() {
   take_all<diagnostics::FaultRecord>(entities_->records, [this](auto& record, bool is_valid, const auto& info) {
     if (is_valid) {
-      records_[record.dtc()] = record;
+      // A hostile sender could invent codes without end.
+      if (records_.size() < kMostEvents) records_[record.dtc()] = record;
     } else if (info.instance_state != fast::ALIVE_INSTANCE_STATE) {
       // The sample has only its key.
       diagnostics::FaultRecord key;
@@ -73,7 +70,7 @@ void FaultMemoryClient::poll() {
     if (is_valid) state_ = state;
   });
   take_all<diagnostics::CommandReply>(entities_->replies, [this](auto& reply, bool is_valid, const auto&) {
-    if (is_valid) replies_[reply.number()] = reply;
+    if (is_valid && asked_.contains(reply.number())) replies_[reply.number()] = reply;
   });
 }
 
@@ -95,6 +92,7 @@ bool FaultMemoryClient::can_command() const {
 
 void FaultMemoryClient::clear(std::uint32_t dtc, std::uint64_t number, const CommandKey& key) {
   diagnostics::ClearCommand command;
+  asked_.insert(number);
   command.number(number);
   command.dtc(dtc);
   command.authentication(authentication_of(key, state_->challenge(), number, dtc));

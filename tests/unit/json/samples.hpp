@@ -235,6 +235,11 @@ inline std::vector<std::string> fault_records() {
   return {diagnostics_text::to_json(record), diagnostics_text::to_json(unknown)};
 }
 
+inline std::vector<std::string> presences() {
+  const dds::Presence silent{"boresight/sensor_health", "front", "car", dds::Absence::kDeadline, 1'800'000'000};
+  return {diagnostics_text::to_json(silent, 1), diagnostics_text::to_json({}, 2)};
+}
+
 inline std::vector<std::string> diagnostic_arrays() {
   diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
   diagnostic_msgs::msg::dds_::DiagnosticStatus_ status;
@@ -260,6 +265,7 @@ inline std::map<std::string, std::vector<Value>> written() {
       {"boresight calibrate reflectors", reflector_runs()},
       {"boresight diagnostics", sensor_healths()},
       {"boresight diagnostics: system", system_healths()},
+      {"boresight diagnostics: stale", presences()},
       {"boresight diagnostics --array", diagnostic_arrays()},
       {"boresight dtc list", fault_records()},
   };
