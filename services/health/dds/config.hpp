@@ -1,4 +1,4 @@
-// Domain, interfaces and topics of the diagnostics.
+// Domain and interfaces of the diagnostics. The topics are in topics.hpp.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,5 @@ struct Config {
   /// File with the secret of those who may command; "": nobody may.
   std::string command_key_file;
 };
-
-inline constexpr const char* kSensorHealthTopic = "boresight/sensor_health";
-inline constexpr const char* kSystemHealthTopic = "boresight/system_health";
-inline constexpr const char* kDiagnosticsTopic = "rt/diagnostics";
-inline constexpr const char* kFaultRecordTopic = "boresight/fault_memory";
-inline constexpr const char* kFaultMemoryStateTopic = "boresight/fault_memory_state";
-inline constexpr const char* kCommandTopic = "boresight/fault_memory_command";
-inline constexpr const char* kCommandReplyTopic = "boresight/fault_memory_reply";
 
 }  // namespace boresight::dds

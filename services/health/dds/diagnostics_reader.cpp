@@ -14,10 +14,6 @@ namespace boresight::dds {
 
 namespace {
 
-constexpr int kReadLatestOfEachRadar = 1;
-constexpr int kReadLatestOfEachVehicle = 1;
-constexpr int kReadArrays = 10;
-
 template <typename Sample>
 class Listener : public eprosima::fastdds::dds::DataReaderListener {
  public:
@@ -46,16 +42,14 @@ class DiagnosticsReader::Readers {
         diagnostic_array_(on_diagnostic_array),
         participant_(config, "boresight") {
     if (on_sensor_health) {
-      participant_.reader(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(), kReadLatestOfEachRadar,
-                          &sensor_health_);
+      participant_.reader(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(), &sensor_health_);
     }
     if (on_system_health) {
-      participant_.reader(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>(), kReadLatestOfEachVehicle,
-                          &system_health_);
+      participant_.reader(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>(), &system_health_);
     }
     if (on_diagnostic_array) {
       participant_.reader(kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(),
-                          kReadArrays, &diagnostic_array_);
+                          &diagnostic_array_);
     }
   }
 

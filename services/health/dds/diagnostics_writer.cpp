@@ -13,20 +13,12 @@
 
 namespace boresight::dds {
 
-namespace {
-constexpr int kWrittenLatestOfEachRadar = 1;
-constexpr int kWrittenLatestOfTheVehicle = 1;
-constexpr int kWrittenArrays = 1;
-}  // namespace
-
 DiagnosticsWriter::DiagnosticsWriter(Participant& participant, const VehicleConfig& vehicle)
     : vehicle_(vehicle),
-      sensor_health_(participant.writer(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>(),
-                                        kWrittenLatestOfEachRadar)),
-      system_health_(participant.writer(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>(),
-                                        kWrittenLatestOfTheVehicle)),
-      diagnostics_(participant.writer(
-          kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>(), kWrittenArrays)) {}
+      sensor_health_(participant.writer(kSensorHealthTopic, guarded<diagnostics::SensorHealthPubSubType>())),
+      system_health_(participant.writer(kSystemHealthTopic, guarded<diagnostics::SystemHealthPubSubType>())),
+      diagnostics_(
+          participant.writer(kDiagnosticsTopic, guarded<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>())) {}
 
 bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) {
   bool taken = true;

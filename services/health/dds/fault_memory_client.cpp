@@ -17,9 +17,6 @@ namespace {
 
 namespace fast = eprosima::fastdds::dds;
 
-constexpr int kLatestOfEachEvent = 1;
-constexpr int kReceivedReplies = 16;
-
 /// Calls `take(sample, is_alive)` for each sample that waits.
 template <typename Sample, typename Take>
 void take_all(fast::DataReader& reader, const Take& take) {
@@ -36,14 +33,10 @@ class FaultMemoryClient::Entities {
  public:
   explicit Entities(const Config& config)
       : participant(config, "boresight"),
-        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), kLatestOfEachEvent,
-                                   nullptr)),
-        state(
-            participant.reader(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), 1, nullptr)),
-        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), kReceivedReplies,
-                                   nullptr)),
-        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), 1,
-                                    Participant::Durability::kVolatile)) {}
+        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), nullptr)),
+        state(participant.reader(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), nullptr)),
+        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), nullptr)),
+        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>())) {}
 
   Participant participant;
   fast::DataReader& records;

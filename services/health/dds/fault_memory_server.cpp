@@ -19,8 +19,6 @@ namespace {
 
 using health::FreezeFrame;
 
-constexpr int kLatest = 1;
-constexpr int kWaitingCommands = 4;
 // A refused command must not help to guess the secret by trying, or load the service.
 constexpr std::int64_t kCommandPause_ns = 200'000'000;
 
@@ -94,12 +92,10 @@ FaultMemoryServer::FaultMemoryServer(Participant& participant, const VehicleConf
     : vehicle_(vehicle),
       memory_(memory),
       key_(key),
-      records_(participant.writer(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), kLatest)),
-      state_(participant.writer(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), kLatest)),
-      replies_(
-          participant.writer(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), kWaitingCommands)),
-      commands_(participant.reader(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), kWaitingCommands,
-                                   nullptr, Participant::Durability::kVolatile)),
+      records_(participant.writer(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>())),
+      state_(participant.writer(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>())),
+      replies_(participant.writer(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>())),
+      commands_(participant.reader(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), nullptr)),
       challenge_(new_challenge()),
       is_sent_(memory.records().size()),
       sent_status_(memory.records().size()) {}

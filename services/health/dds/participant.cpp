@@ -23,11 +23,16 @@ T* made(T* thing, const std::string& what) {
   return thing;
 }
 
+fast::Duration_t duration_of(double seconds) {
+  return fast::Duration_t(static_cast<long double>(seconds));
+}
+
 template <typename Qos>
-void set_common(Qos& qos, int depth, Participant::Durability durability) {
-  qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = durability == Participant::Durability::kVolatile ? fast::VOLATILE_DURABILITY_QOS
-                                                                           : fast::TRANSIENT_LOCAL_DURABILITY_QOS;
+void set_common(Qos& qos, const TopicQos& topic, int depth) {
+  qos.reliability().kind =
+      topic.reliability == Reliability::kReliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind =
+      topic.durability == Durability::kVolatile ? fast::VOLATILE_DURABILITY_QOS : fast::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
@@ -36,7 +41,7 @@ void set_common(Qos& qos, int depth, Participant::Durability durability) {
 
 }  // namespace
 
-Participant::Participant(const Config& config, const std::string& name) {
+Participant::Participant(const Config& config, const std::string& name) : period_s_(config.period_s) {
   fast::DomainParticipantQos qos = fast::PARTICIPANT_QOS_DEFAULT;
   qos.name(name.c_str());
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -54,34 +59,50 @@ Participant::~Participant() {
   fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
-fast::Topic& Participant::topic(const std::string& name, const fast::TypeSupport& type) {
+fast::Topic& Participant::created(const char* name, const fast::TypeSupport& type) {
   if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
     throw std::runtime_error("DDS: cannot register type " + type.get_type_name());
   }
-  return *made(participant_->create_topic(name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT), "topic " + name);
+  return *made(participant_->create_topic(name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT),
+               std::string("topic ") + name);
 }
 
-fast::DataWriter& Participant::writer(const std::string& name, const fast::TypeSupport& type, int depth,
-                                      Durability durability) {
+fast::DataWriter& Participant::writer(const TopicQos& topic, const fast::TypeSupport& type) {
   if (publisher_ == nullptr) {
     publisher_ = made(participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT), "a publisher");
   }
   fast::DataWriterQos qos = fast::DATAWRITER_QOS_DEFAULT;
-  set_common(qos, depth, durability);
+  set_common(qos, topic, topic.written_depth);
   // The sender is the main thread of the service and must not wait for a slow reader.
   qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = {0, 1'000'000};
-  return *made(publisher_->create_datawriter(&topic(name, type), qos), "a writer of " + name);
+  const double period_s = topic.period_s > 0.0 ? topic.period_s : period_s_;
+  if (topic.deadline_periods > 0.0) qos.deadline().period = duration_of(topic.deadline_periods * period_s);
+  if (topic.lease_periods > 0.0) {
+    qos.liveliness().kind = fast::AUTOMATIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = duration_of(topic.lease_periods * period_s);
+    // Three signs of life in a lease: two of them may be lost.
+    qos.liveliness().announcement_period = duration_of(topic.lease_periods * period_s / 3.0);
+  }
+  if (topic.lifespan_periods > 0.0) qos.lifespan().duration = duration_of(topic.lifespan_periods * period_s);
+  return *made(publisher_->create_datawriter(&created(topic.name, type), qos),
+               std::string("a writer of ") + topic.name);
 }
 
-fast::DataReader& Participant::reader(const std::string& name, const fast::TypeSupport& type, int depth,
-                                      fast::DataReaderListener* listener, Durability durability) {
+fast::DataReader& Participant::reader(const TopicQos& topic, const fast::TypeSupport& type,
+                                      fast::DataReaderListener* listener) {
   if (subscriber_ == nullptr) {
     subscriber_ = made(participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT), "a subscriber");
   }
   fast::DataReaderQos qos = fast::DATAREADER_QOS_DEFAULT;
-  set_common(qos, depth, durability);
-  return *made(subscriber_->create_datareader(&topic(name, type), qos, listener), "a reader of " + name);
+  set_common(qos, topic, topic.read_depth);
+  const double period_s = topic.period_s > 0.0 ? topic.period_s : period_s_;
+  if (topic.requested_periods > 0.0) {
+    qos.deadline().period = duration_of(topic.requested_periods * period_s);
+    qos.liveliness().lease_duration = duration_of(topic.requested_periods * period_s);
+  }
+  return *made(subscriber_->create_datareader(&created(topic.name, type), qos, listener),
+               std::string("a reader of ") + topic.name);
 }
 
 }  // namespace boresight::dds

@@ -1,11 +1,11 @@
 // One participant of a DDS domain, over UDP only: a killed participant leaves no file in /dev/shm.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "services/health/dds/config.hpp"
+#include "services/health/dds/topics.hpp"
 
 namespace eprosima::fastdds::dds {
 class DataReader;
@@ -28,22 +28,19 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// What a reader gets that joins late.
-  enum class Durability : std::uint8_t { kTransientLocal, kVolatile };
-
-  /// Reliable, the last `depth` samples of each instance.
-  [[nodiscard]] eprosima::fastdds::dds::DataWriter& writer(const std::string& topic,
-                                                           const eprosima::fastdds::dds::TypeSupport& type, int depth,
-                                                           Durability durability = Durability::kTransientLocal);
-  /// Calls `listener`, if not null, from the middleware's thread. The listener must outlive the participant.
-  eprosima::fastdds::dds::DataReader& reader(const std::string& topic, const eprosima::fastdds::dds::TypeSupport& type,
-                                             int depth, eprosima::fastdds::dds::DataReaderListener* listener,
-                                             Durability durability = Durability::kTransientLocal);
+  /// Offers the quality of service of the topic. Does not block on a slow reader for longer than a millisecond.
+  [[nodiscard]] eprosima::fastdds::dds::DataWriter& writer(const TopicQos& topic,
+                                                           const eprosima::fastdds::dds::TypeSupport& type);
+  /// Requests the quality of service that readers of ours need. Calls `listener`, if not null, from the middleware's
+  /// thread. The listener must outlive the participant.
+  eprosima::fastdds::dds::DataReader& reader(const TopicQos& topic, const eprosima::fastdds::dds::TypeSupport& type,
+                                             eprosima::fastdds::dds::DataReaderListener* listener);
 
  private:
-  [[nodiscard]] eprosima::fastdds::dds::Topic& topic(const std::string& name,
-                                                     const eprosima::fastdds::dds::TypeSupport& type);
+  [[nodiscard]] eprosima::fastdds::dds::Topic& created(const char* name,
+                                                       const eprosima::fastdds::dds::TypeSupport& type);
 
+  double period_s_;  ///< of topics without a period of their own
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

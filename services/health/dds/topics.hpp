@@ -1,0 +1,74 @@
+// The topics off the ECU on one page: name, depth and quality of service of each. Writers and readers are made from
+// this table, and services/health/README.md shows it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace boresight::dds {
+
+/// Whether a sample that was lost on the network is sent again.
+enum class Reliability : std::uint8_t { kReliable, kBestEffort };
+
+/// What a reader gets that joins late: the samples that the writer keeps, or only new ones.
+enum class Durability : std::uint8_t { kTransientLocal, kVolatile };
+
+/// Quality of service of a topic. The times are multiples of its period; 0: none is offered or requested.
+struct TopicQos {
+  const char* name;
+  int written_depth;  ///< samples of each instance that a writer keeps
+  int read_depth;     ///< samples of each instance that wait in a reader of ours
+  Reliability reliability = Reliability::kReliable;
+  Durability durability = Durability::kTransientLocal;
+  double period_s = 0.0;  ///< nominal, of each instance; 0: `dds.period_s`. Without meaning if all times are 0.
+  /// Longest time between two samples of an instance, as offered by the writer.
+  double deadline_periods = 0.0;
+  /// Time without a sign of life after which the writer counts as dead, as offered. The middleware gives the signs.
+  double lease_periods = 0.0;
+  /// Time after which a sample is no longer given to a reader that joins late.
+  double lifespan_periods = 0.0;
+  /// Deadline and lease that readers of ours request. At least what is offered: a reader that requests less gets
+  /// nothing.
+  double requested_periods = 0.0;
+};
+
+/// Sent in each period, and at once when a verdict changes. The times are a choice. One and a half periods tolerate a
+/// sender that is late by half a period. A reader that requests two periods matches.
+[[nodiscard]] constexpr TopicQos periodic(const char* name, int written_depth, int read_depth) {
+  return {.name = name,
+          .written_depth = written_depth,
+          .read_depth = read_depth,
+          .deadline_periods = 1.5,
+          .lease_periods = 1.5,
+          .lifespan_periods = 3.0,
+          .requested_periods = 1.75};
+}
+
+inline constexpr TopicQos kSensorHealthTopic = periodic("boresight/sensor_health", 1, 1);
+inline constexpr TopicQos kSystemHealthTopic = periodic("boresight/system_health", 1, 1);
+inline constexpr TopicQos kDiagnosticsTopic = periodic("rt/diagnostics", 1, 10);
+// Sent when they change, so they have no period.
+inline constexpr TopicQos kFaultRecordTopic{.name = "boresight/fault_memory", .written_depth = 1, .read_depth = 1};
+inline constexpr TopicQos kFaultMemoryStateTopic{
+    .name = "boresight/fault_memory_state", .written_depth = 1, .read_depth = 1};
+inline constexpr TopicQos kCommandTopic{
+    .name = "boresight/fault_memory_command", .written_depth = 1, .read_depth = 4, .durability = Durability::kVolatile};
+inline constexpr TopicQos kCommandReplyTopic{
+    .name = "boresight/fault_memory_reply", .written_depth = 4, .read_depth = 16};
+
+/// All of them.
+inline constexpr std::array kTopics = {kSensorHealthTopic,     kSystemHealthTopic, kDiagnosticsTopic, kFaultRecordTopic,
+                                       kFaultMemoryStateTopic, kCommandTopic,      kCommandReplyTopic};
+
+namespace detail {
+constexpr bool requests_match_offers() {
+  for (const TopicQos& topic : kTopics) {
+    if (topic.requested_periods < topic.deadline_periods || topic.requested_periods < topic.lease_periods) return false;
+  }
+  return true;
+}
+}  // namespace detail
+static_assert(detail::requests_match_offers(), "a reader that requests less than is offered gets nothing");
+
+}  // namespace boresight::dds
