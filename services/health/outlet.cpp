@@ -33,8 +33,10 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
   next_ns_ = now_ns + static_cast<std::int64_t>(config_.period_s * 1e9);
   if (!channel_ && now_ns >= retry_ns_) open(now_ns);
   if (!channel_) return;
-  const bool is_taken = channel_->reports.write(report, runtime::realtime_now_ns());
-  if (!is_taken) node_.fault(Fault::kLink, "DDS: the middleware rejected a sample");
+  const dds::Now now = moment(now_ns);
+  const bool are_services_taken = channel_->topics.write(report, now);
+  const bool is_taken = channel_->reports.write(report, now.epoch_ns) && are_services_taken;
+  if (!is_taken) report_rejection();
   report_mute(!is_taken, now_ns);
 }
 
@@ -43,6 +45,14 @@ void Outlet::serve(std::int64_t now_ns) {
   for (const std::string& event : channel_->faults.serve(now_ns)) {
     runtime::log::warning("{}", event);
   }
+}
+
+dds::Now Outlet::moment(std::int64_t now_ns) {
+  return {.monotonic_ns = now_ns, .epoch_ns = runtime::realtime_now_ns()};
+}
+
+void Outlet::report_rejection() {
+  node_.fault(Fault::kLink, "DDS: the middleware rejected a sample");
 }
 
 void Outlet::open(std::int64_t now_ns) {
