@@ -23,8 +23,8 @@ T* made(T* thing, const std::string& what) {
   return thing;
 }
 
-fast::Duration_t duration_of(double seconds) {
-  return fast::Duration_t(static_cast<long double>(seconds));
+eprosima::fastrtps::Duration_t duration_of(double seconds) {
+  return eprosima::fastrtps::Duration_t(static_cast<long double>(seconds));
 }
 
 template <typename Qos>
