@@ -9,8 +9,6 @@ namespace {
 
 // A new layout of the message needs a look at the IDL.
 static_assert(AlignmentEstimate::kVersion == 4 && sizeof(AlignmentEstimate) == 656);
-static_assert(kNumberOfAlignmentParameters == diagnostics::NUMBER_OF_ALIGNMENT_PARAMETERS);
-static_assert(kAzimuthCurveKnots == diagnostics::AZIMUTH_CURVE_KNOTS);
 static_assert(static_cast<int>(AlignmentState::kConverged) == diagnostics::ALIGNMENT_CONVERGED);
 static_assert(static_cast<int>(AlignmentReason::kShortDrive) == diagnostics::REASON_SHORT_DRIVE);
 static_assert(static_cast<int>(AlignmentFinding::kCopiedDetections) == diagnostics::FINDING_COPIED_DETECTIONS);
@@ -83,8 +81,8 @@ void fill(diagnostics::AlignmentEstimate& out, const AlignmentEstimate& estimate
   out.time_ns(time_ns);
   out.measurement_time_ns(estimate.header.measurement_time_ns);
   out.layout_version(estimate.header.version);
-  out.sequence(estimate.header.sequence);
-  out.radar_sequence(estimate.header.source_sequence);
+  out.sequence_number(estimate.header.sequence);
+  out.radar_sequence_number(estimate.header.source_sequence);
   out.state(enumerator(estimate.state, diagnostics::ALIGNMENT_CONVERGED));
   out.reason(enumerator(estimate.reason, diagnostics::REASON_SHORT_DRIVE));
   out.finding(enumerator(estimate.finding, diagnostics::FINDING_COPIED_DETECTIONS));

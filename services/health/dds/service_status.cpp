@@ -13,8 +13,7 @@ namespace {
 
 // A new layout of the messages needs a look at the IDL.
 static_assert(ServiceStatus::kVersion == 4 && sizeof(SourceStatistics) == 72 && sizeof(ServiceHealth) == 64);
-static_assert(kNumberOfFaults <= diagnostics::MAX_FAULT_KINDS);
-static_assert(kMaxRadars == diagnostics::MAX_SOURCES);
+static_assert(kNumberOfFaults <= 32 && kMaxRadars == 16);
 static_assert(static_cast<int>(ServiceCondition::kRestarted) == diagnostics::CONDITION_RESTARTED);
 static_assert(static_cast<int>(ServiceState::kStopping) == diagnostics::SERVICE_STOPPING);
 
@@ -34,7 +33,7 @@ void fill_source(diagnostics::SourceStatistics& out, const SourceStatistics& sou
 void fill_heartbeat(diagnostics::ServiceStatus& out, const ServiceStatus& status) {
   out.layout_version(status.header.version);
   out.service_index(status.header.source_id);
-  out.sequence(status.header.source_sequence);
+  out.sequence_number(status.header.source_sequence);
   out.heartbeat_time_ns(status.header.measurement_time_ns);
   out.incarnation_ns(status.incarnation_ns);
   out.pid(status.pid);

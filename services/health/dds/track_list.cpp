@@ -10,10 +10,7 @@ namespace {
 
 // A new layout of the message needs a look at the IDL.
 static_assert(TrackList::kVersion == 2 && sizeof(Track) == 288 && sizeof(MessageHeader) == 104);
-static_assert(kMaxTracks == perception::MAX_TRACKS);
-static_assert(kNumberOfObjectClasses == perception::NUMBER_OF_OBJECT_CLASSES);
-static_assert(kTrackStateSize * kTrackStateSize == perception::TRACK_COVARIANCE_SIZE);
-static_assert(kNumberOfStages == perception::NUMBER_OF_STAGES);
+static_assert(kMaxTracks == 128 && kNumberOfStages == 4);
 static_assert(static_cast<int>(TrackStatus::kConfirmed) == perception::CONFIRMED);
 static_assert(static_cast<int>(TrackUpdate::kPredicted) == perception::PREDICTED);
 static_assert(static_cast<int>(MovementState::kStopped) == perception::STOPPED);
@@ -51,8 +48,8 @@ void fill(perception::TrackList& out, const TrackList& list, const std::string& 
   out.time_source(enumerator(list.header.time_source, perception::USER_ARRIVAL));
   out.layout_version(list.header.version);
   out.radar_id(list.header.source_id);
-  out.sequence(list.header.sequence);
-  out.scan_sequence(list.header.source_sequence);
+  out.sequence_number(list.header.sequence);
+  out.scan_sequence_number(list.header.source_sequence);
   for (std::size_t i = 0; i < kNumberOfStages; ++i) {
     out.stages()[i].begin_ns(list.header.stages[i].begin_ns);
     out.stages()[i].end_ns(list.header.stages[i].end_ns);
