@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/diagnostics_topics.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/boresight/terminal/output_file.hpp"
@@ -28,6 +29,7 @@ namespace {
 struct DiagnosticsOptions {
   dds::Config dds;
   bool array = false;
+  TopicChoice topics;
   bool all = false;
   std::string json;  ///< file, "-" for standard output; empty: text
   std::uint64_t count = 0;
@@ -113,7 +115,9 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   dds::DiagnosticsReader::OnSensorHealth on_sensor_health;
   dds::DiagnosticsReader::OnSystemHealth on_system_health;
   dds::DiagnosticsReader::OnDiagnosticArray on_array;
-  if (options.array) {
+  if (options.topics.any()) {
+    // Health is not read.
+  } else if (options.array) {
     on_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
       printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
     };
@@ -129,6 +133,11 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   }
   std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array,
                                                on_system_health);
+  std::optional<dds::TopicReader> topic_reader;
+  if (options.topics.any()) {
+    const auto print = [&printer](const std::string& text) { printer.print(text); };
+    topic_reader.emplace(options.dds, printing(options.topics, is_json, print));
+  }
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -139,6 +148,7 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   reader.reset();  // no further lines
+  topic_reader.reset();
   printer.commit();
   int result = exit_code::kSuccess;
   if (printer.printed() < std::max<std::uint64_t>(options.count, 1)) {
@@ -168,9 +178,10 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
       ->add_option("--interface", options->dds.interfaces,
                    "IPv4 address of a network interface to use; repeatable; all interfaces if not given")
       ->type_name("ADDRESS");
-  command->add_flag(
+  auto* const array = command->add_flag(
       "--array", options->array,
       "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");
+  add_topic_options(*command, options->topics, array);
   command->add_flag("--all", options->all, "Prints every sample, not only changed states");
   add_json_option(*command, options->json,
                   "A line of JSON for each sample; without FILE, or with \"-\": to standard output");
