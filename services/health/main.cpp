@@ -65,6 +65,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
     outlet.write(*sent, changed, now_ns);
   });
   const int exit_code = node.spin();
+  outlet.end();
   store.finish();
   return exit_code;
 }

@@ -1,15 +1,19 @@
 #include "services/health/outlet.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/health/dds/interfaces.hpp"
 
 namespace boresight::health {
 
 namespace {
 constexpr std::int64_t kRetryPeriod_ns = 5'000'000'000;
+constexpr const char* kRejection = "the middleware rejected a sample";
 }  // namespace
 
 dds::CommandKey command_key_of(const dds::Config& config) {
@@ -20,24 +24,39 @@ dds::CommandKey command_key_of(const dds::Config& config) {
   return key;
 }
 
-void Outlet::report_mute(bool is_mute, std::int64_t now_ns) {
+void Outlet::report_mute(const std::string& problem, std::int64_t now_ns) {
+  if (problem != problem_) {
+    if (problem.empty()) {
+      runtime::log::info("diagnostics are sent on DDS domain {} again", config_.domain);
+    } else {
+      runtime::log::warning("diagnostics are mute on DDS: {}", problem);
+    }
+    problem_ = problem;
+  }
+  if (!problem.empty()) node_.fault(Fault::kLink, "DDS is mute: " + problem);
   FreezeFrame frame;
   frame.time_ns = runtime::realtime_now_ns();
   frame.uptime_ns = static_cast<std::uint64_t>(now_ns);
   frame.cycle = faults_.cycle();
-  faults_.report({EventKind::kDiagnosticsMute}, is_mute ? TestResult::kFailed : TestResult::kPassed, now_ns, frame);
+  const TestResult result = problem.empty() ? TestResult::kPassed : TestResult::kFailed;
+  faults_.report({EventKind::kDiagnosticsMute}, result, now_ns, frame);
 }
 
 void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns) {
   if (!config_.enabled || (!at_once && now_ns < next_ns_)) return;
   next_ns_ = now_ns + static_cast<std::int64_t>(config_.period_s * 1e9);
-  if (!channel_ && now_ns >= retry_ns_) open(now_ns);
-  if (!channel_) return;
-  const dds::Now now = moment(now_ns);
-  const bool are_services_taken = channel_->topics.write(report, now);
-  const bool is_taken = channel_->reports.write(report, now.epoch_ns) && are_services_taken;
-  if (!is_taken) report_rejection();
-  report_mute(!is_taken, now_ns);
+  std::string problem = look_at_interfaces();
+  if (!channel_ && !used_addresses_.empty()) {
+    const std::string reason = now_ns >= retry_ns_ ? open(now_ns) : problem_;
+    if (problem.empty()) problem = reason;
+  }
+  if (channel_) {
+    const dds::Now now = moment(now_ns);
+    const bool are_services_taken = channel_->topics.write(report, now);
+    const bool is_report_taken = channel_->reports.write(report, now.epoch_ns);
+    if (!(are_services_taken && is_report_taken) && problem.empty()) problem = kRejection;
+  }
+  report_mute(problem, now_ns);
 }
 
 void Outlet::serve(std::int64_t now_ns) {
@@ -52,17 +71,46 @@ dds::Now Outlet::moment(std::int64_t now_ns) {
 }
 
 void Outlet::report_rejection() {
-  node_.fault(Fault::kLink, "DDS: the middleware rejected a sample");
+  node_.fault(Fault::kLink, std::string("DDS: ") + kRejection);
 }
 
-void Outlet::open(std::int64_t now_ns) {
+void Outlet::end() {
+  if (!channel_) return;
+  channel_->topics.end();
+  channel_->reports.end(runtime::realtime_now_ns(), config_.farewell_s);
+}
+
+std::string Outlet::look_at_interfaces() {
+  dds::UsableInterfaces usable;
+  try {
+    usable = dds::usable_interfaces(config_.interfaces, dds::local_interfaces());
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  // The middleware does not join the multicast group of an interface again that was lost.
+  if (channel_ && !std::ranges::includes(used_addresses_, usable.addresses)) {
+    runtime::log::info("DDS: the network interfaces changed; joining domain {} again", config_.domain);
+    channel_.reset();
+    retry_ns_ = 0;
+  }
+  if (channel_) {
+    std::vector<std::string> kept;
+    std::ranges::set_intersection(used_addresses_, usable.addresses, std::back_inserter(kept));
+    used_addresses_ = std::move(kept);
+  } else {
+    used_addresses_ = usable.addresses;
+  }
+  return dds::joined(usable.problems);
+}
+
+std::string Outlet::open(std::int64_t now_ns) {
   try {
     channel_.emplace(config_, vehicle_, faults_, key_);
-    runtime::log::info("diagnostics are sent on DDS domain {}", config_.domain);
+    if (problem_.empty()) runtime::log::info("diagnostics are sent on DDS domain {}", config_.domain);
+    return {};
   } catch (const std::exception& error) {
-    node_.fault(Fault::kLink, error.what());
-    report_mute(true, now_ns);
     retry_ns_ = now_ns + kRetryPeriod_ns;
+    return error.what();
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "services/common/runtime/node.hpp"
 #include "services/common/vehicle/vehicle.hpp"
@@ -36,6 +38,8 @@ class Outlet {
   }
   /// Sends what changed in the fault memory, and executes commands that were received.
   void serve(std::int64_t now_ns);
+  /// At the orderly end of the service: tells the readers.
+  void end();
 
  private:
   /// Everything that exists only with a participant.
@@ -52,9 +56,14 @@ class Outlet {
   };
 
   [[nodiscard]] static dds::Now moment(std::int64_t now_ns);
-  void open(std::int64_t now_ns);
   void report_rejection();
-  void report_mute(bool is_mute, std::int64_t now_ns);
+  /// Compares the interfaces with those of the participant; leaves the domain if it must be joined anew. Returns what
+  /// is wrong with them.
+  std::string look_at_interfaces();
+  /// Joins the domain; returns why that is impossible.
+  std::string open(std::int64_t now_ns);
+  /// `problem`: why readers cannot receive; "" if they can.
+  void report_mute(const std::string& problem, std::int64_t now_ns);
 
   runtime::Node& node_;
   const VehicleConfig& vehicle_;
@@ -64,6 +73,8 @@ class Outlet {
   std::optional<Channel> channel_;
   std::int64_t next_ns_ = 0;
   std::int64_t retry_ns_ = 0;
+  std::vector<std::string> used_addresses_;  ///< of the participant, as far as they were never lost
+  std::string problem_;                      ///< the latest reported
 };
 
 }  // namespace boresight::health

@@ -1,4 +1,4 @@
-// `boresight diagnostics`: what the health service says by DDS, from anywhere on the network.
+// `boresight diagnostics`: what the health service says by DDS, and when it falls silent.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <thread>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -19,15 +20,22 @@
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/boresight/terminal/output_file.hpp"
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/config/network_values.hpp"
+#include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/stop_signal.hpp"
+#include "services/health/config.hpp"
 #include "services/health/dds/diagnostics_reader.hpp"
+#include "services/health/dds/topics.hpp"
 
 namespace boresight {
 
 namespace {
 
 struct DiagnosticsOptions {
-  dds::Config dds;
+  runtime::Configuration configuration;
+  std::optional<std::uint32_t> domain;
+  std::vector<std::string> interfaces;
   bool array = false;
   TopicChoice topics;
   bool all = false;
@@ -70,12 +78,16 @@ class LinePrinter {
   std::atomic<bool> failed_ = false;
 };
 
+/// A hostile sender could invent names without end. If all are known, some lines appear twice.
+constexpr std::size_t kMostVerdicts = std::size_t{kMaxRadars} * dds::kMostVehicles + 1;
+
 /// Whether the state of a radar differs from the one before; numbers that always change do not count.
 class StateChanges {
  public:
   bool observe(const diagnostics::SensorHealth& s) {
     const Verdict verdict(s.data_qualifier(), s.extended_qualifier(), s.finding(), s.drift().since_ns() != 0,
                           s.load_change().time_ns(), s.speed_change().time_ns());
+    if (verdicts_.size() >= kMostVerdicts) verdicts_.clear();
     const auto [known, is_first] = verdicts_.try_emplace({s.vehicle_name(), s.radar_id()}, verdict);
     const bool changed = is_first || known->second != verdict;
     known->second = verdict;
@@ -95,6 +107,7 @@ class SystemChanges {
  public:
   bool observe(const diagnostics::SystemHealth& s) {
     const Verdict verdict(s.overall(), s.pipeline().data_qualifier(), s.pipeline().trouble_codes(), s.services());
+    if (verdicts_.size() >= kMostVerdicts) verdicts_.clear();
     const auto [known, is_first] = verdicts_.try_emplace(s.vehicle_name(), verdict);
     const bool changed = is_first || known->second != verdict;
     known->second = verdict;
@@ -107,36 +120,51 @@ class SystemChanges {
   std::map<std::string, Verdict> verdicts_;
 };
 
+/// The options take precedence over the environment, and the environment over the file.
+dds::Config dds_of(const DiagnosticsOptions& options) {
+  dds::Config config = health::read_config(config::Reader::open(options.configuration.service_file("health"))).dds;
+  if (options.domain) config.domain = *options.domain;
+  if (options.interfaces.empty()) return config;
+  if (const auto problem = config::problem_of_interfaces(options.interfaces)) {
+    throw UsageError("--interface: " + *problem);
+  }
+  config.interfaces = options.interfaces;
+  return config;
+}
+
 int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {
   const bool is_json = !options.json.empty();
   LinePrinter printer(is_json ? options.json : "-");
   StateChanges changes;
   SystemChanges system_changes;
-  dds::DiagnosticsReader::OnSensorHealth on_sensor_health;
-  dds::DiagnosticsReader::OnSystemHealth on_system_health;
-  dds::DiagnosticsReader::OnDiagnosticArray on_array;
+  dds::DiagnosticsCallbacks callbacks;
   if (options.topics.any()) {
     // Health is not read.
   } else if (options.array) {
-    on_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
+    callbacks.on_diagnostic_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
       printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
     };
   } else {
-    on_sensor_health = [&](const diagnostics::SensorHealth& sensor) {
+    callbacks.on_sensor_health = [&](const diagnostics::SensorHealth& sensor) {
       if (!changes.observe(sensor) && !options.all) return;
       printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor) + "\n");
     };
-    on_system_health = [&](const diagnostics::SystemHealth& system) {
+    callbacks.on_system_health = [&](const diagnostics::SystemHealth& system) {
       if (!system_changes.observe(system) && !options.all) return;
       printer.print(is_json ? diagnostics_text::to_json(system) : diagnostics_text::to_line(system) + "\n");
     };
   }
-  std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array,
-                                               on_system_health);
+  callbacks.on_presence = [&](const dds::Presence& presence) {
+    const std::int64_t now_ns = runtime::realtime_now_ns();
+    printer.print(is_json ? diagnostics_text::to_json(presence, now_ns)
+                          : diagnostics_text::to_line(presence, now_ns) + "\n");
+  };
+  const dds::Config config = dds_of(options);
+  std::optional<dds::DiagnosticsReader> reader(std::in_place, config, std::move(callbacks));
   std::optional<dds::TopicReader> topic_reader;
   if (options.topics.any()) {
     const auto print = [&printer](const std::string& text) { printer.print(text); };
-    topic_reader.emplace(options.dds, printing(options.topics, is_json, print));
+    topic_reader.emplace(config, printing(options.topics, is_json, print));
   }
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
@@ -155,7 +183,7 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
     report_problem(
         command, fmt::format("{} on DDS domain {}",
                              printer.printed() == 0 ? "nothing was received" : "fewer lines were received than --count",
-                             options.dds.domain));
+                             config.domain));
     result = exit_code::kFinding;
   }
   return exit_code_after_signal(result);
@@ -164,20 +192,24 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
 }  // namespace
 
 void add_diagnostics_command(CLI::App& app, int& exit_code) {
-  CLI::App* const command = app.add_subcommand(
-      "diagnostics",
-      "Prints what the health service publishes over DDS: a line when the state of a radar or of the system changes.");
+  CLI::App* const command = app.add_subcommand("diagnostics",
+                                               "Prints what the health service publishes over DDS: a line when the "
+                                               "state of a radar or of the system changes, and "
+                                               "when a source becomes stale or is received again.");
   auto options = std::make_shared<DiagnosticsOptions>();
   constexpr std::uint32_t kHighestDomain = 232;
-  command->add_option("--domain", options->dds.domain, "DDS domain")
-      ->envname("BORESIGHT_DDS_DOMAIN")
-      ->check(CLI::Range(0U, kHighestDomain))
-      ->type_name("N")
-      ->capture_default_str();
+  runtime::add_config_option(*command, options->configuration);
   command
-      ->add_option("--interface", options->dds.interfaces,
-                   "IPv4 address of a network interface to use; repeatable; all interfaces if not given")
-      ->type_name("ADDRESS");
+      ->add_option("--domain", options->domain,
+                   "DDS domain; default: BORESIGHT_DDS_DOMAIN of the environment, else dds.domain of health.toml")
+      ->check(CLI::Range(0U, kHighestDomain))
+      ->type_name("N");
+  command
+      ->add_option(
+          "--interface", options->interfaces,
+          "Name or IPv4 address of a network interface to use, or \"all\"; repeatable; default: dds.interfaces "
+          "of health.toml")
+      ->type_name("NAME|ADDRESS");
   auto* const array = command->add_flag(
       "--array", options->array,
       "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");
@@ -189,10 +221,11 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
   command->add_option("--seconds", options->seconds, "Ends after so many seconds; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  on_call(*command, exit_code,
-          {"diagnostics --all --count 10", "as many lines as wanted were received",
-           "nothing was received, or fewer lines than --count"},
-          [options, command] { return run_diagnostics(*options, *command); });
+  on_call(
+      *command, exit_code,
+      {"diagnostics --all --count 10", "as many lines as wanted were received",
+       "nothing was received, or fewer lines than --count"},
+      [options, command] { return run_diagnostics(*options, *command); }, &options->configuration);
 }
 
 }  // namespace boresight

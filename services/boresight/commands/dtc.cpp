@@ -16,6 +16,7 @@
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/state_file.hpp"
+#include "services/common/text/printable.hpp"
 #include "services/health/config.hpp"
 #include "services/health/core/faults/codec.hpp"
 #include "services/health/dds/fault_memory_client.hpp"
@@ -157,7 +158,7 @@ int run_clear(const DtcOptions& options) {
   });
   if (!is_answered) throw Finding("the health service did not reply");
   const diagnostics::CommandReply& reply = *client.reply(number);
-  if (!reply.is_accepted()) throw Finding("refused: " + reply.reason());
+  if (!reply.is_accepted()) throw Finding("refused: " + text::printable(reply.reason()));
   terminal::print(options.code.empty() ? "all codes cleared\n" : options.code + " cleared\n");
   return exit_code::kSuccess;
 }

@@ -33,6 +33,34 @@ std::string_view word(diagnostics::AxisEffect effect) {
   return name_of(static_cast<AxisEffect>(effect));
 }
 
+/// Key of JSON, and the sentence.
+struct AbsenceWords {
+  std::string_view key;
+  std::string_view sentence;
+};
+AbsenceWords words_of(dds::Absence absence) {
+  switch (absence) {
+    case dds::Absence::kNone:
+      return {"none", ""};
+    case dds::Absence::kDeadline:
+      return {"deadline", "no sample within the deadline, the health service is silent"};
+    case dds::Absence::kLiveliness:
+      return {"liveliness", "no sign of life, the health service is dead or not reachable"};
+    case dds::Absence::kEnded:
+      return {"ended", "the health service ended in order"};
+    case dds::Absence::kNoWriter:
+      return {"no_writer", "the health service left the domain"};
+    case dds::Absence::kRefused:
+      return {"refused",
+              "a writer offers a longer deadline or lease than requested; compare dds.period_s of health.toml"};
+  }
+  return {"?", "?"};
+}
+
+double seconds_of(std::int64_t time_ns) {
+  return static_cast<double>(time_ns) * 1e-9;
+}
+
 std::string clock_time(std::int64_t seconds, std::int64_t nanoseconds) {
   return fmt::format("{:%H:%M:%S}.{}", fmt::localtime(static_cast<std::time_t>(seconds)), nanoseconds / 100'000'000);
 }
@@ -237,6 +265,32 @@ std::string to_json(const DiagnosticArray_& array) {
   object["frame_id"] = array.header_().frame_id_();
   json::Value& statuses = object["status"] = json::Value::array();
   for (const auto& status : array.status_()) statuses.push_back(object_of(status));
+  return json::line(object);
+}
+
+std::string to_line(const dds::Presence& presence, std::int64_t time_ns) {
+  const std::string begin = clock_time_of(time_ns) + " " + text::padded(text::printable(presence.source), kNameColumns);
+  const double silent_s = seconds_of(presence.silent_ns);
+  const std::string_view sentence = words_of(presence.absence).sentence;
+  switch (presence.absence) {
+    case dds::Absence::kNone:
+      return fmt::format("{}received again after {:.1f} s", begin, silent_s);
+    case dds::Absence::kRefused:
+      return fmt::format("{}STALE: {}", begin, sentence);
+    default:
+      return fmt::format("{}STALE since {:.1f} s: {}", begin, silent_s, sentence);
+  }
+}
+
+std::string to_json(const dds::Presence& presence, std::int64_t time_ns) {
+  json::Value object;
+  object["source"] = presence.source;
+  object["topic"] = presence.topic;
+  object["vehicle"] = presence.vehicle;
+  object["time_ns"] = time_ns;
+  object["stale"] = presence.absence != dds::Absence::kNone;
+  object["stale_reason"] = words_of(presence.absence).key;
+  object["silent_s"] = json::significant(seconds_of(presence.silent_ns));
   return json::line(object);
 }
 

@@ -106,26 +106,28 @@ std::string status_text(std::uint8_t status) {
 }
 
 std::string fault_list(const std::vector<diagnostics::FaultRecord>& records, const std::string& head) {
-  std::string text = head + "\n";
+  std::string text = text::printable(head) + "\n";
   if (records.empty()) return text;
   constexpr std::size_t kCode = 10, kSubject = 30, kName = 24, kTimes = 6;
   text += text::padded("code", kCode) + text::padded("subject", kSubject) + text::padded("event", kName) +
           text::padded("times", kTimes) + text::padded("latest", 21) + "status\n";
   for (const diagnostics::FaultRecord& record : records) {
-    text += text::padded(record.code(), kCode) + text::padded(text::printable(record.subject()), kSubject) +
-            text::padded(record.name(), kName) + text::padded(fmt::format("{}", record.occurrences()), kTimes) +
+    text += text::padded(text::printable(record.code()), kCode) +
+            text::padded(text::printable(record.subject()), kSubject) +
+            text::padded(text::printable(record.name()), kName) +
+            text::padded(fmt::format("{}", record.occurrences()), kTimes) +
             text::padded(date_time(record.latest().time_ns()), 21) + status_text(record.status()) + "\n";
   }
   return text;
 }
 
 std::string fault_page(const diagnostics::FaultRecord& record) {
-  std::string page =
-      fmt::format("{} {}: {}\n", record.code(), text::printable(record.subject()), text::printable(record.meaning()));
+  std::string page = fmt::format("{} {}: {}\n", text::printable(record.code()), text::printable(record.subject()),
+                                 text::printable(record.meaning()));
   const auto add = [&page](std::string_view name, const std::string& value) {
     page += fmt::format("  {}{}\n", text::padded(name, 28), value);
   };
-  add("event", record.name());
+  add("event", text::printable(record.name()));
   add("remedy", text::printable(record.remedy()));
   add("status", fmt::format("0x{:02X}: {}", record.status(), status_text(record.status())));
   add("fault detection counter", fmt::format("{}", static_cast<std::int8_t>(record.fault_detection_counter())));

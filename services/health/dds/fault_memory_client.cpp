@@ -33,10 +33,13 @@ class FaultMemoryClient::Entities {
  public:
   explicit Entities(const Config& config)
       : participant(config, "boresight"),
-        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(), nullptr)),
-        state(participant.reader(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>(), nullptr)),
-        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(), nullptr)),
-        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>())) {}
+        records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(kFaultRecordTopic),
+                                   nullptr)),
+        state(participant.reader(kFaultMemoryStateTopic,
+                                 guarded<diagnostics::FaultMemoryStatePubSubType>(kFaultMemoryStateTopic), nullptr)),
+        replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(kCommandReplyTopic),
+                                   nullptr)),
+        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(kCommandTopic))) {}
 
   Participant participant;
   fast::DataReader& records;
@@ -51,7 +54,8 @@ FaultMemoryClient::~FaultMemoryClient() = default;
 void FaultMemoryClient::poll() {
   take_all<diagnostics::FaultRecord>(entities_->records, [this](auto& record, bool is_valid, const auto& info) {
     if (is_valid) {
-      records_[record.dtc()] = record;
+      // A hostile sender could invent codes without end.
+      if (records_.size() < kMostEvents) records_[record.dtc()] = record;
     } else if (info.instance_state != fast::ALIVE_INSTANCE_STATE) {
       // The sample has only its key.
       diagnostics::FaultRecord key;
@@ -66,7 +70,7 @@ void FaultMemoryClient::poll() {
     if (is_valid) state_ = state;
   });
   take_all<diagnostics::CommandReply>(entities_->replies, [this](auto& reply, bool is_valid, const auto&) {
-    if (is_valid) replies_[reply.number()] = reply;
+    if (is_valid && asked_.contains(reply.number())) replies_[reply.number()] = reply;
   });
 }
 
@@ -88,6 +92,7 @@ bool FaultMemoryClient::can_command() const {
 
 void FaultMemoryClient::clear(std::uint32_t dtc, std::uint64_t number, const CommandKey& key) {
   diagnostics::ClearCommand command;
+  asked_.insert(number);
   command.number(number);
   command.dtc(dtc);
   command.authentication(authentication_of(key, state_->challenge(), number, dtc));

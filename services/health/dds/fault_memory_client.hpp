@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "generated/fault_memory.h"
@@ -40,6 +41,7 @@ class FaultMemoryClient {
   std::unique_ptr<Entities> entities_;
   std::map<std::uint32_t, diagnostics::FaultRecord> records_;
   std::optional<diagnostics::FaultMemoryState> state_;
+  std::set<std::uint64_t> asked_;  ///< numbers of the commands
   std::map<std::uint64_t, diagnostics::CommandReply> replies_;
 };
 

@@ -92,10 +92,13 @@ FaultMemoryServer::FaultMemoryServer(Participant& participant, const VehicleConf
     : vehicle_(vehicle),
       memory_(memory),
       key_(key),
-      records_(participant.writer(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>())),
-      state_(participant.writer(kFaultMemoryStateTopic, guarded<diagnostics::FaultMemoryStatePubSubType>())),
-      replies_(participant.writer(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>())),
-      commands_(participant.reader(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(), nullptr)),
+      records_(participant.writer(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(kFaultRecordTopic))),
+      state_(participant.writer(kFaultMemoryStateTopic,
+                                guarded<diagnostics::FaultMemoryStatePubSubType>(kFaultMemoryStateTopic))),
+      replies_(
+          participant.writer(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(kCommandReplyTopic))),
+      commands_(
+          participant.reader(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(kCommandTopic), nullptr)),
       challenge_(new_challenge()),
       is_sent_(memory.records().size()),
       sent_status_(memory.records().size()) {}

@@ -1,5 +1,6 @@
 #include "services/health/dds/participant.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -10,6 +11,9 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include "services/common/runtime/config/network_values.hpp"
+#include "services/health/dds/interfaces.hpp"
 
 namespace boresight::dds {
 
@@ -35,7 +39,11 @@ void set_common(Qos& qos, const TopicQos& topic, int depth) {
       topic.durability == Durability::kVolatile ? fast::VOLATILE_DURABILITY_QOS : fast::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  // The middleware's default is ten instances.
+  qos.resource_limits().max_instances = topic.most_instances;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_samples = topic.most_instances * (depth + 1);  // one more while the next is received
+  qos.resource_limits().allocated_samples = 1;
   qos.data_sharing().off();
 }
 
@@ -45,7 +53,11 @@ Participant::Participant(const Config& config, const std::string& name) : period
   fast::DomainParticipantQos qos = fast::PARTICIPANT_QOS_DEFAULT;
   qos.name(name.c_str());
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = config.interfaces;
+  const UsableInterfaces usable = usable_interfaces(config.interfaces, local_interfaces());
+  // Without a usable address the middleware would be mute without an error.
+  if (usable.addresses.empty()) throw std::runtime_error("DDS: " + joined(usable.problems));
+  const bool uses_all = std::ranges::find(config.interfaces, config::kAllInterfaces) != config.interfaces.end();
+  if (!uses_all) udp->interfaceWhiteList = usable.addresses;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   auto* const factory = fast::DomainParticipantFactory::get_instance();
@@ -73,9 +85,12 @@ fast::DataWriter& Participant::writer(const TopicQos& topic, const fast::TypeSup
   }
   fast::DataWriterQos qos = fast::DATAWRITER_QOS_DEFAULT;
   set_common(qos, topic, topic.written_depth);
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   // The sender is the main thread of the service and must not wait for a slow reader.
   qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = {0, 1'000'000};
+  // What is sent in each period ends with its sender; the records of the fault memory do not.
+  qos.writer_data_lifecycle().autodispose_unregistered_instances = topic.deadline_periods > 0.0;
   const double period_s = topic.period_s > 0.0 ? topic.period_s : period_s_;
   if (topic.deadline_periods > 0.0) qos.deadline().period = duration_of(topic.deadline_periods * period_s);
   if (topic.lease_periods > 0.0) {
@@ -96,6 +111,8 @@ fast::DataReader& Participant::reader(const TopicQos& topic, const fast::TypeSup
   }
   fast::DataReaderQos qos = fast::DATAREADER_QOS_DEFAULT;
   set_common(qos, topic, topic.read_depth);
+  // The size of the type is the most that a sender can make this reader reserve, whatever size it announces.
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
   const double period_s = topic.period_s > 0.0 ? topic.period_s : period_s_;
   if (topic.requested_periods > 0.0) {
     qos.deadline().period = duration_of(topic.requested_periods * period_s);

@@ -20,7 +20,7 @@ namespace {
 
 using diagnostic_msgs::msg::dds_::DiagnosticStatus_;
 using diagnostic_msgs::msg::dds_::KeyValue_;
-enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
+enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2, kStale = 3 };
 
 using alignment_words::radar_name;
 
@@ -39,14 +39,54 @@ diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
   return out;
 }
 
-Level level_of(DataQualifier qualifier) {
-  if (qualifier == DataQualifier::kAvailable) return kOk;
-  return qualifier == DataQualifier::kAvailableReduced ? kWarn : kError;
+/// Whether a test other than that of missing data has failed and makes the radar unusable.
+bool has_proven_fault(const SensorHealth& sensor) {
+  for (std::size_t i = 0; i < kNumberOfRadarEvents; ++i) {
+    const auto event = static_cast<RadarEvent>(i);
+    if (event == RadarEvent::kNoData || (sensor.failed_events & bit_of(event)) == 0) continue;
+    if (health::type_of(health::kind_of(event)).effect == DataQualifier::kNotAvailable) return true;
+  }
+  return false;
+}
+
+Level level_of(const SensorHealth& sensor) {
+  if (sensor.data_qualifier == DataQualifier::kAvailable) return kOk;
+  if (sensor.data_qualifier == DataQualifier::kAvailableReduced) return kWarn;
+  const bool is_without_data = sensor.extended_qualifier == ExtendedQualifier::kNoData ||
+                               sensor.extended_qualifier == ExtendedQualifier::kInitialising;
+  return is_without_data && !has_proven_fault(sensor) ? kStale : kError;
 }
 
 Level level_of(ServiceCondition condition) {
-  if (condition == ServiceCondition::kAlive) return kOk;
-  return condition == ServiceCondition::kDegraded || condition == ServiceCondition::kRestarted ? kWarn : kError;
+  switch (condition) {
+    case ServiceCondition::kAlive:
+      return kOk;
+    case ServiceCondition::kDegraded:
+    case ServiceCondition::kRestarted:
+      return kWarn;
+    case ServiceCondition::kUnknown:
+    case ServiceCondition::kSilent:
+      return kStale;
+  }
+  return kError;
+}
+
+/// Level of the whole: STALE if nothing is proven to be faulty and something without data makes it unusable.
+Level level_of_whole(const HealthReport& report, const std::vector<DiagnosticStatus_>& parts) {
+  if (report.overall == DataQualifier::kAvailable) return kOk;
+  if (report.overall == DataQualifier::kAvailableReduced) return kWarn;
+  const auto has = [&parts](Level level) {
+    return std::ranges::any_of(parts, [level](const DiagnosticStatus_& part) { return part.level_() == level; });
+  };
+  return has(kStale) && !has(kError) && report.pipeline.failed_events == 0 ? kStale : kError;
+}
+
+builtin_interfaces::msg::dds_::Time_ stamp_of(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  builtin_interfaces::msg::dds_::Time_ stamp;
+  stamp.sec_(static_cast<std::int32_t>(time_ns / kSecond_ns));
+  stamp.nanosec_(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+  return stamp;
 }
 
 void add_value(DiagnosticStatus_& status, std::string_view key, std::string value) {
@@ -85,7 +125,7 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
 DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
   DiagnosticStatus_ status;
   const std::string name = radar_name(vehicle, sensor.radar_id);
-  status.level_(level_of(sensor.data_qualifier));
+  status.level_(level_of(sensor));
   status.name_("boresight/radar/" + name);
   status.hardware_id_(vehicle.name + "/" + name);
   const std::string explanation = alignment_words::explanation_of(sensor, vehicle);
@@ -145,7 +185,6 @@ DiagnosticStatus_ status_of(const ServiceHealth& service, const VehicleConfig& v
 
 DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleConfig& vehicle) {
   DiagnosticStatus_ status;
-  status.level_(level_of(report.overall));
   status.name_("boresight");
   status.hardware_id_(vehicle.name);
   status.message_(std::string(name_of(report.overall)));
@@ -220,17 +259,26 @@ diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size
 
 diagnostic_msgs::msg::dds_::DiagnosticArray_ to_diagnostic_array(const HealthReport& report,
                                                                  const VehicleConfig& vehicle, std::int64_t time_ns) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
   diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
-  array.header_().stamp_().sec_(static_cast<std::int32_t>(time_ns / kSecond_ns));
-  array.header_().stamp_().nanosec_(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+  array.header_().stamp_() = stamp_of(time_ns);
   array.header_().frame_id_(vehicle.name);
-  array.status_().push_back(status_of_pipeline(report, vehicle));
+  auto& statuses = array.status_();
+  statuses.push_back(status_of_pipeline(report, vehicle));
   const std::size_t sensors = std::min<std::size_t>(report.number_of_sensors, kMaxRadars);
-  for (std::size_t i = 0; i < sensors; ++i) array.status_().push_back(status_of(report.sensors[i], vehicle));
+  for (std::size_t i = 0; i < sensors; ++i) statuses.push_back(status_of(report.sensors[i], vehicle));
   const std::size_t services = std::min<std::size_t>(report.number_of_services, kMaxServices);
-  for (std::size_t i = 0; i < services; ++i) array.status_().push_back(status_of(report.services[i], vehicle));
+  for (std::size_t i = 0; i < services; ++i) statuses.push_back(status_of(report.services[i], vehicle));
+  statuses.front().level_(level_of_whole(report, {statuses.begin() + 1, statuses.end()}));
   return array;
+}
+
+void to_ended(diagnostic_msgs::msg::dds_::DiagnosticArray_& array, std::int64_t time_ns) {
+  array.header_().stamp_() = stamp_of(time_ns);
+  for (DiagnosticStatus_& status : array.status_()) {
+    status.level_(kStale);
+    status.message_("the health service ended");
+    status.values_().clear();
+  }
 }
 
 }  // namespace boresight::dds

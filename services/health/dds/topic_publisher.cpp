@@ -34,10 +34,13 @@ TopicPublisher::TopicPublisher(Participant& participant, const Config& config, c
     : vehicle_(vehicle),
       samples_(std::make_unique<Samples>()),
       track_pace_(config.tracks_period_s),
-      tracks_(config.tracks ? &participant.writer(kTrackListTopic, guarded<perception::TrackListPubSubType>())
-                            : nullptr),
-      alignment_(participant.writer(kAlignmentTopic, guarded<diagnostics::AlignmentEstimatePubSubType>())),
-      service_status_(participant.writer(kServiceStatusTopic, guarded<diagnostics::ServiceStatusPubSubType>())) {
+      tracks_(config.tracks
+                  ? &participant.writer(kTrackListTopic, guarded<perception::TrackListPubSubType>(kTrackListTopic))
+                  : nullptr),
+      alignment_(
+          participant.writer(kAlignmentTopic, guarded<diagnostics::AlignmentEstimatePubSubType>(kAlignmentTopic))),
+      service_status_(
+          participant.writer(kServiceStatusTopic, guarded<diagnostics::ServiceStatusPubSubType>(kServiceStatusTopic))) {
   samples_->tracks.tracks().reserve(kMaxTracks);
   for (Radar& radar : radars_) radar.pace = Pace(config.period_s);
 }
@@ -89,6 +92,16 @@ bool TopicPublisher::write(const HealthReport& report, Now now) {
     is_taken = write_service(service, now) && is_taken;
   }
   return is_taken;
+}
+
+void TopicPublisher::end() {
+  const eprosima::fastrtps::rtps::InstanceHandle_t by_key;
+  // The writer disposes what it unregisters.
+  for (const Service& service : services_) {
+    if (!service.has_health) continue;
+    fill(samples_->service, service.health, nullptr, vehicle_.name, 0);
+    service_status_.unregister_instance(&samples_->service, by_key);
+  }
 }
 
 bool TopicPublisher::write_service(const Service& service, Now now) {

@@ -39,6 +39,8 @@ class TopicPublisher {
   bool write(const ServiceStatus& status, Now now);
   /// Sends the status of each service.
   bool write(const HealthReport& report, Now now);
+  /// At the orderly end: readers see that the services are no longer observed.
+  void end();
 
  private:
   struct Samples;

@@ -45,13 +45,15 @@ class TopicReader::Readers {
         service_status_(std::move(callbacks.on_service_status)),
         participant_(config, "boresight") {
     if (tracks_.is_wanted()) {
-      participant_.reader(kTrackListTopic, guarded<perception::TrackListPubSubType>(), &tracks_);
+      participant_.reader(kTrackListTopic, guarded<perception::TrackListPubSubType>(kTrackListTopic), &tracks_);
     }
     if (alignment_.is_wanted()) {
-      participant_.reader(kAlignmentTopic, guarded<diagnostics::AlignmentEstimatePubSubType>(), &alignment_);
+      participant_.reader(kAlignmentTopic, guarded<diagnostics::AlignmentEstimatePubSubType>(kAlignmentTopic),
+                          &alignment_);
     }
     if (service_status_.is_wanted()) {
-      participant_.reader(kServiceStatusTopic, guarded<diagnostics::ServiceStatusPubSubType>(), &service_status_);
+      participant_.reader(kServiceStatusTopic, guarded<diagnostics::ServiceStatusPubSubType>(kServiceStatusTopic),
+                          &service_status_);
     }
   }
 

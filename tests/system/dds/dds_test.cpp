@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kTime_ns = 1'700'000'000'250'000'000;
-const Config kConfig{.enabled = true, .domain = 77, .interfaces = {}, .period_s = 1.0, .command_key_file = {}};
+const Config kConfig{.domain = 77, .command_key_file = {}};
 
 VehicleConfig vehicle() {
   VehicleConfig v;
@@ -99,19 +99,23 @@ struct Received {
   diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
   diagnostics::SystemHealth system;
 
-  DiagnosticsReader::OnSensorHealth on_sensor = [this](const diagnostics::SensorHealth& s) {
-    const std::lock_guard lock(mutex);
-    sensors[s.radar_id()] = s;
-    ++samples;
-  };
-  DiagnosticsReader::OnDiagnosticArray on_array = [this](const diagnostic_msgs::msg::dds_::DiagnosticArray_& a) {
-    const std::lock_guard lock(mutex);
-    array = a;
-  };
-  DiagnosticsReader::OnSystemHealth on_system = [this](const diagnostics::SystemHealth& s) {
-    const std::lock_guard lock(mutex);
-    system = s;
-  };
+  DiagnosticsCallbacks callbacks{.on_sensor_health =
+                                     [this](const diagnostics::SensorHealth& s) {
+                                       const std::lock_guard lock(mutex);
+                                       sensors[s.radar_id()] = s;
+                                       ++samples;
+                                     },
+                                 .on_system_health =
+                                     [this](const diagnostics::SystemHealth& s) {
+                                       const std::lock_guard lock(mutex);
+                                       system = s;
+                                     },
+                                 .on_diagnostic_array =
+                                     [this](const diagnostic_msgs::msg::dds_::DiagnosticArray_& a) {
+                                       const std::lock_guard lock(mutex);
+                                       array = a;
+                                     },
+                                 .on_presence = {}};
   bool is_complete() {
     const std::lock_guard lock(mutex);
     return sensors.size() == 2 && !array.status_().empty() && !system.vehicle_name().empty();
@@ -127,7 +131,7 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   ASSERT_TRUE(writer.write(report(), kTime_ns));
   // The reader starts after the writing.
   Received received;
-  const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array, received.on_system);
+  const DiagnosticsReader reader(kConfig, received.callbacks);
   ASSERT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); })) << "no sample arrived";
   const std::lock_guard lock(received.mutex);
   EXPECT_EQ(received.samples, 2u) << "one instance a radar, the latest only";
@@ -207,7 +211,7 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(values["scans lost before the gateway"], "23456789012");
   EXPECT_EQ(values["suspect scans"], "34");
   EXPECT_EQ(statuses[7].name_(), "boresight/service/tracker");
-  EXPECT_EQ(statuses[7].level_(), 2) << "silent";
+  EXPECT_EQ(statuses[7].level_(), 3) << "silent";
 }
 
 TEST(Dds, LeavesNothingInSharedMemory) {
@@ -215,7 +219,7 @@ TEST(Dds, LeavesNothingInSharedMemory) {
     Participant participant(kConfig, "test");
     DiagnosticsWriter writer(participant, vehicle());
     Received received;
-    const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array, received.on_system);
+    const DiagnosticsReader reader(kConfig, received.callbacks);
     ASSERT_TRUE(writer.write(report(), kTime_ns));
     EXPECT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); }));
     EXPECT_TRUE(fs::is_empty("/dev/shm")) << "UDP only";
@@ -229,7 +233,7 @@ TEST(Dds, OtherDomainsReceiveNothing) {
   Received received;
   Config other = kConfig;
   other.domain = 78;
-  const DiagnosticsReader reader(other, received.on_sensor, received.on_array, received.on_system);
+  const DiagnosticsReader reader(other, received.callbacks);
   ASSERT_TRUE(writer.write(report(), kTime_ns));
   EXPECT_FALSE(harness::eventually(1.0, [&] { return received.is_complete(); }));
 }
@@ -247,7 +251,7 @@ TEST(Dds, AnotherImplementationReadsTheTopics) {
   EXPECT_EQ(pclose(pipe), 0) << output;
   EXPECT_NE(output.find("status 1 boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos)
       << output;
-  EXPECT_NE(output.find("status 2 boresight/service/tracker: silent"), std::string::npos) << output;
+  EXPECT_NE(output.find("status 3 boresight/service/tracker: silent"), std::string::npos) << output;
   EXPECT_NE(output.find("system test car 1 pipeline 1 U1B00-82 U1B00-33 lost 12"), std::string::npos) << output;
   EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436 suspect 34 conditions 72"), std::string::npos) << output;
 }
@@ -298,7 +302,7 @@ TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {
   const auto array = to_diagnostic_array(report(), vehicle(), kTime_ns);
   const std::string lines = diagnostics_text::to_lines(array);
   EXPECT_NE(lines.find("WARN  boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos) << lines;
-  EXPECT_NE(lines.find("ERROR boresight/service/tracker: silent"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("STALE boresight/service/tracker: silent"), std::string::npos) << lines;
   EXPECT_EQ(lines.find("front_left"), std::string::npos) << "statuses that are OK are not listed";
 }
 

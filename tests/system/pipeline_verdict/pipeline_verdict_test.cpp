@@ -51,14 +51,11 @@ class Subscriber {
   }
   std::mutex mutex_;
   std::vector<std::pair<std::int64_t, diagnostics::DataQualifier>> samples_;
-  dds::DiagnosticsReader reader_{{.enabled = true,
-                                  .domain = static_cast<std::uint32_t>(std::atoi(kDdsDomain)),
-                                  .interfaces = {},
-                                  .period_s = 1.0,
-                                  .command_key_file = {}},
-                                 {},
-                                 {},
-                                 [this](const diagnostics::SystemHealth& sample) { take(sample); }};
+  dds::DiagnosticsReader reader_{{.domain = static_cast<std::uint32_t>(std::atoi(kDdsDomain)), .command_key_file = {}},
+                                 {.on_sensor_health = {},
+                                  .on_system_health = [this](const diagnostics::SystemHealth& sample) { take(sample); },
+                                  .on_diagnostic_array = {},
+                                  .on_presence = {}}};
 };
 
 /// A drive without a misaligned radar under the whole product, with all radars verified.

@@ -42,7 +42,10 @@ std::string text_of(const fs::path& file) {
 class Subscriber {
  public:
   explicit Subscriber(const dds::Config& config)
-      : reader_(config, [this](const diagnostics::SensorHealth& sample) { take(sample); }, {}) {}
+      : reader_(config, {.on_sensor_health = [this](const diagnostics::SensorHealth& sample) { take(sample); },
+                         .on_system_health = {},
+                         .on_diagnostic_array = {},
+                         .on_presence = {}}) {}
   /// Samples that do not report the misalignment.
   [[nodiscard]] std::size_t other() {
     const std::lock_guard lock(mutex_);
@@ -126,7 +129,7 @@ class VerdictRestored : public testing::Test {
   std::unique_ptr<harness::Domain> domain_;
   std::unique_ptr<Observer> observer_;
   int observers_ = 0;
-  const dds::Config dds_{.enabled = true, .domain = 78, .interfaces = {}, .period_s = 1.0, .command_key_file = {}};
+  const dds::Config dds_{.domain = 78, .command_key_file = {}};
 };
 
 TEST_F(VerdictRestored, OverAKillOfHealthAndOfRouDiAndANewStart) {

@@ -66,6 +66,12 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_TRUE(read.fault_store.enabled);
   EXPECT_EQ(read.fault_store.path, "");
   EXPECT_EQ(read.fault_store.operation_cycle, OperationCycle::kBoot);
+  const dds::Config diagnostics;
+  EXPECT_EQ(read.dds.domain, diagnostics.domain);
+  EXPECT_EQ(read.dds.interfaces, diagnostics.interfaces);
+  EXPECT_EQ(read.dds.period_s, diagnostics.period_s);
+  EXPECT_EQ(read.dds.farewell_s, diagnostics.farewell_s);
+  EXPECT_THAT(read.dds.interfaces, testing::ElementsAre("127.0.0.1")) << "no other machine can listen";
   EXPECT_EQ(read.dds.command_key_file, "") << "nobody may command unless the integrator wants it";
 }
 

@@ -10,20 +10,26 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string problem_of(const std::vector<std::string>& addresses) {
-  return problem_of_ipv4_addresses(addresses).value_or("");
+std::string problem_of(const std::vector<std::string>& interfaces) {
+  return problem_of_interfaces(interfaces).value_or("");
 }
 
-TEST(NetworkValues, AddressesOfInterfacesAreDistinctUnicastIpv4) {
-  EXPECT_EQ(problem_of({}), "");
-  EXPECT_EQ(problem_of({"127.0.0.1", "10.13.1.2"}), "");
-  for (const char* wrong : {"banana", "eth0", "", "10.0.0", "10.0.0.1/24", " 10.0.0.1", "fd00::1", "10.0.0.256"}) {
-    EXPECT_THAT(problem_of({"10.0.0.1", wrong}), HasSubstr("must be IPv4 addresses")) << wrong;
+TEST(NetworkValues, InterfacesAreDistinctNamesOrUnicastIpv4Addresses) {
+  EXPECT_EQ(problem_of({"127.0.0.1", "10.13.1.2", "eth0", "banana"}), "") << "whether it exists is known at run time";
+  for (const char* wrong : {"", "10.0.0", "10.0.0.1/24", " 10.0.0.1", "fd00::1", "10.0.0.256", "0.0.0.0", "1234",
+                            "a234567890123456", "../eth0", "eth0\n"}) {
+    EXPECT_THAT(problem_of({"10.0.0.1", wrong}), HasSubstr("must be names or IPv4 addresses")) << wrong;
   }
-  for (const char* wrong : {"0.0.0.0", "224.0.0.1", "255.255.255.255"}) {
+  for (const char* wrong : {"224.0.0.1", "255.255.255.255"}) {
     EXPECT_THAT(problem_of({wrong}), HasSubstr("must be addresses of single interfaces")) << wrong;
   }
-  EXPECT_THAT(problem_of({"10.0.0.1", "10.0.0.2", "10.0.0.1"}), HasSubstr("\"10.0.0.1\" must be named once only"));
+  EXPECT_THAT(problem_of({"10.0.0.1", "eth0", "10.0.0.1"}), HasSubstr("\"10.0.0.1\" must be named once only"));
+}
+
+TEST(NetworkValues, AllInterfacesMustBeMeant) {
+  EXPECT_EQ(problem_of({"all"}), "");
+  EXPECT_THAT(problem_of({"all", "eth0"}), HasSubstr("must be the only entry"));
+  EXPECT_THAT(problem_of({}), HasSubstr("is empty"));
 }
 
 TEST(NetworkValues, InterfaceNamesAreThoseThatLinuxAllows) {

@@ -11,17 +11,31 @@
 
 namespace boresight::config {
 
-std::optional<std::string> problem_of_ipv4_addresses(std::span<const std::string> addresses) {
+namespace {
+
+/// Nothing but digits and dots: meant as an address, although Linux would allow it as a name.
+bool looks_like_an_address(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<std::string> problem_of_interfaces(std::span<const std::string> interfaces) {
   constexpr std::uint32_t kBroadcast = 0xFFFFFFFF;
-  for (auto text = addresses.begin(); text != addresses.end(); ++text) {
+  if (interfaces.empty()) return "is empty; must name interfaces, or be [\"all\"]";
+  for (auto text = interfaces.begin(); text != interfaces.end(); ++text) {
+    if (*text == kAllInterfaces && interfaces.size() > 1) return "\"all\" must be the only entry";
     const auto address = recording::parse_ip(*text);
-    if (!address || !(address->is_v4() || address->is_unspecified())) {
-      return fmt::format("\"{}\" is not allowed; must be IPv4 addresses of this machine's interfaces", *text);
+    if (address && address->is_v4()) {
+      if (address->is_multicast() || address->to_v4() == kBroadcast) {
+        return fmt::format("\"{}\" is not allowed; must be addresses of single interfaces", *text);
+      }
+    } else if (address || looks_like_an_address(*text) || !is_interface_name(*text)) {
+      return fmt::format("\"{}\" is not allowed; must be names or IPv4 addresses of this machine's interfaces", *text);
     }
-    if (address->is_unspecified() || address->is_multicast() || address->to_v4() == kBroadcast) {
-      return fmt::format("\"{}\" is not allowed; must be addresses of single interfaces", *text);
+    if (std::find(interfaces.begin(), text, *text) != text) {
+      return fmt::format("\"{}\" must be named once only", *text);
     }
-    if (std::find(addresses.begin(), text, *text) != text) return fmt::format("\"{}\" must be named once only", *text);
   }
   return std::nullopt;
 }

@@ -8,9 +8,13 @@
 
 namespace boresight::config {
 
-/// What is wrong with a list of IPv4 addresses of this machine's interfaces; nullopt if nothing is. Each address must
-/// be IPv4, that of one host (not 0.0.0.0, multicast or broadcast), and be named once. An empty list is allowed.
-[[nodiscard]] std::optional<std::string> problem_of_ipv4_addresses(std::span<const std::string> addresses);
+/// Stands for every network interface of the machine.
+inline constexpr std::string_view kAllInterfaces = "all";
+
+/// What is wrong with a list of this machine's network interfaces; nullopt if nothing is. An entry is a name that Linux
+/// allows, or an IPv4 address of one host (not 0.0.0.0, multicast or broadcast), and is named once. kAllInterfaces must
+/// be the only entry, and an empty list is wrong. Whether an interface exists is not checked.
+[[nodiscard]] std::optional<std::string> problem_of_interfaces(std::span<const std::string> interfaces);
 
 /// True for a name that Linux allows for a network interface: 1 … 15 bytes without '/', ':', blanks and control
 /// characters, and neither "." nor "..".
