@@ -64,7 +64,7 @@ constexpr std::size_t kByte = 1, kWord = 4, kDoubleWord = 8;
 
 template <>
 bool sequences_fit<perception::TrackList>(std::span<const std::uint8_t> payload) {
-  constexpr std::size_t kTrackWords = 18 + 6 + 49;  // numbers up to `flags`, class probabilities, covariance
+  constexpr std::size_t kTrackWords = 20 + 6 + 49;  // numbers up to `flags`, class probabilities, covariance
   constexpr std::uint32_t kMostTracks = 128;
   Walk walk(payload);
   walk.text();                    // vehicle_name
