@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "generated/track_listPubSubTypes.h"
-#include "tests/unit/health/dds/samples.hpp"
+#include "tests/unit/dds/samples.hpp"
 
 namespace boresight::dds {
 namespace {
@@ -33,7 +33,7 @@ perception::TrackList sample_of(const TrackList& list) {
   return sample;
 }
 
-testing::Bytes bytes_of(const TrackList& list) {
+testing::Bytes list_bytes(const TrackList& list) {
   return testing::sent<perception::TrackListPubSubType>(sample_of(list));
 }
 
@@ -88,9 +88,9 @@ TEST(TrackListByDds, DependsOnEveryByteOfTheMessage) {
   const std::size_t tracks = offsetof(TrackList, tracks);
   std::vector<std::size_t> unused;
   testing::append(unused, offsetof(MessageHeader, reserved), 7);
-  EXPECT_EQ(testing::without_effect(*list, 0, sizeof(MessageHeader) + 6 * sizeof(std::uint32_t), bytes_of), unused);
-  EXPECT_TRUE(testing::without_effect(*list, tracks, tracks + 3 * sizeof(Track), bytes_of).empty());
-  EXPECT_EQ(testing::without_effect(*list, tracks + 3 * sizeof(Track), tracks + 4 * sizeof(Track), bytes_of).size(),
+  EXPECT_EQ(testing::without_effect(*list, 0, sizeof(MessageHeader) + 6 * sizeof(std::uint32_t), list_bytes), unused);
+  EXPECT_TRUE(testing::without_effect(*list, tracks, tracks + 3 * sizeof(Track), list_bytes).empty());
+  EXPECT_EQ(testing::without_effect(*list, tracks + 3 * sizeof(Track), tracks + 4 * sizeof(Track), list_bytes).size(),
             sizeof(Track))
       << "behind the last track";
 }
@@ -101,7 +101,7 @@ TEST(TrackListByDds, HoldsNoMoreThanItsCapacity) {
   EXPECT_EQ(testing::received<perception::TrackListPubSubType>(sample_of(*list)).tracks().size(), kMaxTracks);
   EXPECT_TRUE(sample_of(list_of(0)).tracks().empty());
   // One datagram of UDP, without fragments of DDS.
-  EXPECT_LT(bytes_of(*list).size(), 60'000U);
+  EXPECT_LT(list_bytes(*list).size(), 60'000U);
 }
 
 TEST(TrackListByDds, UsesTheMemoryOfTheSampleAgain) {

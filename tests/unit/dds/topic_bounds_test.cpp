@@ -7,7 +7,7 @@
 #include "generated/service_statusPubSubTypes.h"
 #include "generated/track_listPubSubTypes.h"
 #include "services/health/dds/sample_bounds.hpp"
-#include "tests/unit/health/dds/samples.hpp"
+#include "tests/unit/dds/samples.hpp"
 
 namespace boresight::dds {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "generated/alignment_estimatePubSubTypes.h"
-#include "tests/unit/health/dds/samples.hpp"
+#include "tests/unit/dds/samples.hpp"
 
 namespace boresight::dds {
 namespace {

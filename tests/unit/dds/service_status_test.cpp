@@ -8,7 +8,7 @@
 #include "generated/service_statusPubSubTypes.h"
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
-#include "tests/unit/health/dds/samples.hpp"
+#include "tests/unit/dds/samples.hpp"
 
 namespace boresight::dds {
 namespace {
