@@ -25,7 +25,7 @@ VehicleConfig car() {
 }
 
 AlignmentEstimate estimate() {
-  auto e = testing::distinct<AlignmentEstimate>();
+  auto e = samples::distinct<AlignmentEstimate>();
   e.header.source_id = 2;
   e.state = AlignmentState::kConverging;
   e.reason = AlignmentReason::kNotObservable;
@@ -39,8 +39,8 @@ diagnostics::AlignmentEstimate estimate_sample(const AlignmentEstimate& e) {
   return sample;
 }
 
-testing::Bytes estimate_bytes(const AlignmentEstimate& e) {
-  return testing::sent<EstimateType>(estimate_sample(e));
+samples::Bytes estimate_bytes(const AlignmentEstimate& e) {
+  return samples::sent<EstimateType>(estimate_sample(e));
 }
 
 void expect_same(const diagnostics::EstimatedValue& got, const AlignmentValue& value) {
@@ -56,7 +56,7 @@ void expect_same(const diagnostics::VehicleChange& got, const AlignmentVehicleCh
 
 TEST(AlignmentByDds, HasStateAnglesAndCovariancesInTheirPlaces) {
   const AlignmentEstimate e = estimate();
-  const auto got = testing::received<EstimateType>(estimate_sample(e));
+  const auto got = samples::received<EstimateType>(estimate_sample(e));
   EXPECT_EQ(got.radar_id(), 2U);
   EXPECT_EQ(got.radar_name(), "front_right");
   EXPECT_EQ(got.vehicle_name(), "test car");
@@ -89,7 +89,7 @@ TEST(AlignmentByDds, HasStateAnglesAndCovariancesInTheirPlaces) {
 
 TEST(AlignmentByDds, HasChangesNuisanceParametersAndKeyFiguresInTheirPlaces) {
   const AlignmentEstimate e = estimate();
-  const auto got = testing::received<EstimateType>(estimate_sample(e));
+  const auto got = samples::received<EstimateType>(estimate_sample(e));
   EXPECT_EQ(got.step_change().time_ns(), e.step_change.time_ns);
   EXPECT_EQ(got.step_change().rotation_vehicle_rad(), e.step_change.rotation_vehicle_rad);
   EXPECT_EQ(got.step_change().count(), e.step_change.count);
@@ -134,8 +134,8 @@ TEST(AlignmentByDds, HasChangesNuisanceParametersAndKeyFiguresInTheirPlaces) {
 TEST(AlignmentByDds, DependsOnEveryByteOfTheMessage) {
   const AlignmentEstimate e = estimate();
   std::vector<std::size_t> unused;
-  testing::append(unused, offsetof(AlignmentEstimate, reserved), 1);
-  testing::append(unused, offsetof(AlignmentEstimate, kpis) + offsetof(AlignmentKpis, reserved), 4);
+  samples::append(unused, offsetof(AlignmentEstimate, reserved), 1);
+  samples::append(unused, offsetof(AlignmentEstimate, kpis) + offsetof(AlignmentKpis, reserved), 4);
   // An estimate is the sum of many scans: the stages of one of them say nothing.
   const std::size_t begin = sizeof(MessageHeader);
   const std::size_t covariance = offsetof(AlignmentEstimate, covariance);
@@ -143,15 +143,15 @@ TEST(AlignmentByDds, DependsOnEveryByteOfTheMessage) {
   const std::size_t gap = offsetof(AlignmentEstimate, angle_noise_scale) + sizeof(float);
   for (std::size_t i = gap; i < covariance; ++i) unused.insert(unused.end() - 4, i);
   const std::size_t end = offsetof(AlignmentEstimate, kpis) + sizeof(AlignmentKpis);
-  EXPECT_EQ(testing::without_effect(e, begin, end, estimate_bytes), unused);
+  EXPECT_EQ(samples::without_effect(e, begin, end, estimate_bytes), unused);
   const std::size_t end_of_numbers = offsetof(MessageHeader, time_source);
-  EXPECT_TRUE(testing::without_effect(e, 0, end_of_numbers, estimate_bytes).empty());
+  EXPECT_TRUE(samples::without_effect(e, 0, end_of_numbers, estimate_bytes).empty());
 }
 
 TEST(AlignmentByDds, KeepsWhatIsNoNumber) {
   AlignmentEstimate e = estimate();
   e.kpis.nees = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(testing::received<EstimateType>(estimate_sample(e)).kpis().nees()));
+  EXPECT_TRUE(std::isnan(samples::received<EstimateType>(estimate_sample(e)).kpis().nees()));
 }
 
 TEST(AlignmentByDds, ReplacesAnImpossibleValueOfAnEnumeration) {

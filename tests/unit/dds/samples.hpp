@@ -8,7 +8,7 @@
 
 #include "interfaces/messages/header.hpp"
 
-namespace boresight::dds::testing {
+namespace boresight::dds::samples {
 
 using Bytes = std::vector<unsigned char>;
 
@@ -68,4 +68,4 @@ inline void append(std::vector<std::size_t>& offsets, std::size_t begin, std::si
   for (std::size_t i = 0; i < count; ++i) offsets.push_back(begin + i);
 }
 
-}  // namespace boresight::dds::testing
+}  // namespace boresight::dds::samples

@@ -16,7 +16,7 @@ namespace {
 using StatusType = diagnostics::ServiceStatusPubSubType;
 
 ServiceHealth tracker_health() {
-  auto health = testing::distinct<ServiceHealth>();
+  auto health = samples::distinct<ServiceHealth>();
   health.service = static_cast<std::uint32_t>(catalogue::Service::kTracker);
   health.condition = ServiceCondition::kDegraded;
   health.deadline_missed = 0;
@@ -24,7 +24,7 @@ ServiceHealth tracker_health() {
 }
 
 ServiceStatus heartbeat() {
-  auto status = testing::distinct<ServiceStatus>();
+  auto status = samples::distinct<ServiceStatus>();
   status.state = ServiceState::kDegraded;
   status.last_fault = {'b', 'a', 'd', ' ', 'f', 'r', 'a', 'm', 'e', '\0', 'x'};
   return status;
@@ -39,7 +39,7 @@ diagnostics::ServiceStatus status_sample(const ServiceHealth& health, const Serv
 TEST(ServiceStatusByDds, HasVerdictAndHeartbeatInTheirPlaces) {
   const ServiceHealth health = tracker_health();
   const auto status = std::make_unique<ServiceStatus>(heartbeat());
-  const auto got = testing::received<StatusType>(status_sample(health, status.get()));
+  const auto got = samples::received<StatusType>(status_sample(health, status.get()));
   EXPECT_EQ(got.service_name(), "tracker");
   EXPECT_EQ(got.vehicle_name(), "test car");
   EXPECT_EQ(got.time_ns(), 123);
@@ -75,7 +75,7 @@ TEST(ServiceStatusByDds, HasVerdictAndHeartbeatInTheirPlaces) {
 
 TEST(ServiceStatusByDds, HasEveryFaultByNameAndEverySource) {
   const auto status = std::make_unique<ServiceStatus>(heartbeat());
-  const auto got = testing::received<StatusType>(status_sample(tracker_health(), status.get()));
+  const auto got = samples::received<StatusType>(status_sample(tracker_health(), status.get()));
   ASSERT_EQ(got.faults().size(), kNumberOfFaults);
   for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
     EXPECT_EQ(got.faults()[i].name(), name_of(static_cast<Fault>(i)));
@@ -100,24 +100,24 @@ TEST(ServiceStatusByDds, HasEveryFaultByNameAndEverySource) {
 TEST(ServiceStatusByDds, DependsOnEveryByteOfTheHeartbeat) {
   const auto status = std::make_unique<ServiceStatus>(heartbeat());
   const ServiceHealth health = tracker_health();
-  const auto bytes = [&](const ServiceStatus& s) { return testing::sent<StatusType>(status_sample(health, &s)); };
+  const auto bytes = [&](const ServiceStatus& s) { return samples::sent<StatusType>(status_sample(health, &s)); };
   std::vector<std::size_t> unused;
-  testing::append(unused, offsetof(ServiceStatus, reserved), 3);
-  testing::append(unused, offsetof(ServiceStatus, last_fault) + 10, 118);  // behind the end of the text
-  EXPECT_EQ(testing::without_effect(*status, sizeof(MessageHeader), sizeof(ServiceStatus), bytes), unused);
+  samples::append(unused, offsetof(ServiceStatus, reserved), 3);
+  samples::append(unused, offsetof(ServiceStatus, last_fault) + 10, 118);  // behind the end of the text
+  EXPECT_EQ(samples::without_effect(*status, sizeof(MessageHeader), sizeof(ServiceStatus), bytes), unused);
 }
 
 TEST(ServiceStatusByDds, DependsOnEveryByteOfTheVerdict) {
   const auto status = std::make_unique<ServiceStatus>(heartbeat());
-  const auto bytes = [&](const ServiceHealth& h) { return testing::sent<StatusType>(status_sample(h, status.get())); };
+  const auto bytes = [&](const ServiceHealth& h) { return samples::sent<StatusType>(status_sample(h, status.get())); };
   std::vector<std::size_t> unused;
-  testing::append(unused, offsetof(ServiceHealth, reserved), 2);
+  samples::append(unused, offsetof(ServiceHealth, reserved), 2);
   // The heartbeat has these two.
-  testing::append(unused, offsetof(ServiceHealth, processing_max_us), sizeof(float));
-  testing::append(unused, offsetof(ServiceHealth, heap_allocations), sizeof(std::uint64_t));
+  samples::append(unused, offsetof(ServiceHealth, processing_max_us), sizeof(float));
+  samples::append(unused, offsetof(ServiceHealth, heap_allocations), sizeof(std::uint64_t));
   // Of the index only the lowest byte leads to another service's name.
   std::vector<std::size_t> found =
-      testing::without_effect(tracker_health(), sizeof(float), sizeof(ServiceHealth), bytes);
+      samples::without_effect(tracker_health(), sizeof(float), sizeof(ServiceHealth), bytes);
   EXPECT_EQ(found, unused);
 }
 

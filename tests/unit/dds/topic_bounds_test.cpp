@@ -12,7 +12,7 @@
 namespace boresight::dds {
 namespace {
 
-using testing::Bytes;
+using samples::Bytes;
 
 perception::TrackList tracks_sample(std::size_t tracks) {
   perception::TrackList list;
@@ -22,7 +22,7 @@ perception::TrackList tracks_sample(std::size_t tracks) {
 }
 
 Bytes tracks_bytes(std::size_t tracks) {
-  return testing::sent<perception::TrackListPubSubType>(tracks_sample(tracks));
+  return samples::sent<perception::TrackListPubSubType>(tracks_sample(tracks));
 }
 
 diagnostics::ServiceStatus status_with(std::size_t faults, std::size_t sources) {
@@ -69,15 +69,15 @@ TEST(BoundsOfTracks, RefuseMoreThanWasReceivedAndMoreThanTheCapacity) {
 
 TEST(BoundsOfServices, AcceptWhatIsSent) {
   for (const auto& [faults, sources] : {std::pair{0U, 0U}, std::pair{13U, 16U}, std::pair{32U, 1U}}) {
-    const Bytes bytes = testing::sent<diagnostics::ServiceStatusPubSubType>(status_with(faults, sources));
+    const Bytes bytes = samples::sent<diagnostics::ServiceStatusPubSubType>(status_with(faults, sources));
     ASSERT_FALSE(bytes.empty());
     EXPECT_TRUE(sequences_fit<diagnostics::ServiceStatus>(bytes)) << faults << " " << sources;
   }
 }
 
 TEST(BoundsOfServices, RefuseAnyLengthThatWasNotReceived) {
-  const Bytes bytes = testing::sent<diagnostics::ServiceStatusPubSubType>(status_with(2, 1));
-  const Bytes without = testing::sent<diagnostics::ServiceStatusPubSubType>(status_with(0, 1));
+  const Bytes bytes = samples::sent<diagnostics::ServiceStatusPubSubType>(status_with(2, 1));
+  const Bytes without = samples::sent<diagnostics::ServiceStatusPubSubType>(status_with(0, 1));
   std::size_t length_of_faults = 0;
   while (bytes[length_of_faults] == without[length_of_faults]) ++length_of_faults;
   Bytes hostile = bytes;
@@ -85,7 +85,7 @@ TEST(BoundsOfServices, RefuseAnyLengthThatWasNotReceived) {
   EXPECT_FALSE(sequences_fit<diagnostics::ServiceStatus>(hostile));
   announce(hostile, length_of_faults, 33);
   EXPECT_FALSE(sequences_fit<diagnostics::ServiceStatus>(hostile));
-  const Bytes no_source = testing::sent<diagnostics::ServiceStatusPubSubType>(status_with(2, 0));
+  const Bytes no_source = samples::sent<diagnostics::ServiceStatusPubSubType>(status_with(2, 0));
   std::size_t length_of_sources = 0;
   while (bytes[length_of_sources] == no_source[length_of_sources]) ++length_of_sources;
   hostile = bytes;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kTime_ns = 1'700'000'000'250'000'000;
 
 TrackList list_of(std::uint32_t number_of_tracks) {
-  TrackList list = testing::distinct<TrackList>();
+  TrackList list = samples::distinct<TrackList>();
   list.header.time_source = TimeSource::kSensorFreeRunning;
   list.number_of_tracks = number_of_tracks;
   for (Track& track : list.tracks) {
@@ -33,13 +33,13 @@ perception::TrackList sample_of(const TrackList& list) {
   return sample;
 }
 
-testing::Bytes list_bytes(const TrackList& list) {
-  return testing::sent<perception::TrackListPubSubType>(sample_of(list));
+samples::Bytes list_bytes(const TrackList& list) {
+  return samples::sent<perception::TrackListPubSubType>(sample_of(list));
 }
 
 TEST(TrackListByDds, HasEveryFieldOfEveryTrackInItsPlace) {
   const auto list = std::make_unique<TrackList>(list_of(kMaxTracks));
-  const perception::TrackList got = testing::received<perception::TrackListPubSubType>(sample_of(*list));
+  const perception::TrackList got = samples::received<perception::TrackListPubSubType>(sample_of(*list));
   EXPECT_EQ(got.vehicle_name(), "test car");
   EXPECT_EQ(got.time_ns(), kTime_ns);
   EXPECT_EQ(got.measurement_time_ns(), list->header.measurement_time_ns);
@@ -87,10 +87,10 @@ TEST(TrackListByDds, DependsOnEveryByteOfTheMessage) {
   const auto list = std::make_unique<TrackList>(list_of(3));
   const std::size_t tracks = offsetof(TrackList, tracks);
   std::vector<std::size_t> unused;
-  testing::append(unused, offsetof(MessageHeader, reserved), 7);
-  EXPECT_EQ(testing::without_effect(*list, 0, sizeof(MessageHeader) + 6 * sizeof(std::uint32_t), list_bytes), unused);
-  EXPECT_TRUE(testing::without_effect(*list, tracks, tracks + 3 * sizeof(Track), list_bytes).empty());
-  EXPECT_EQ(testing::without_effect(*list, tracks + 3 * sizeof(Track), tracks + 4 * sizeof(Track), list_bytes).size(),
+  samples::append(unused, offsetof(MessageHeader, reserved), 7);
+  EXPECT_EQ(samples::without_effect(*list, 0, sizeof(MessageHeader) + 6 * sizeof(std::uint32_t), list_bytes), unused);
+  EXPECT_TRUE(samples::without_effect(*list, tracks, tracks + 3 * sizeof(Track), list_bytes).empty());
+  EXPECT_EQ(samples::without_effect(*list, tracks + 3 * sizeof(Track), tracks + 4 * sizeof(Track), list_bytes).size(),
             sizeof(Track))
       << "behind the last track";
 }
@@ -98,7 +98,7 @@ TEST(TrackListByDds, DependsOnEveryByteOfTheMessage) {
 TEST(TrackListByDds, HoldsNoMoreThanItsCapacity) {
   const auto list = std::make_unique<TrackList>(list_of(kMaxTracks + 1));
   EXPECT_EQ(sample_of(*list).tracks().size(), kMaxTracks);
-  EXPECT_EQ(testing::received<perception::TrackListPubSubType>(sample_of(*list)).tracks().size(), kMaxTracks);
+  EXPECT_EQ(samples::received<perception::TrackListPubSubType>(sample_of(*list)).tracks().size(), kMaxTracks);
   EXPECT_TRUE(sample_of(list_of(0)).tracks().empty());
   // One datagram of UDP, without fragments of DDS.
   EXPECT_LT(list_bytes(*list).size(), 60'000U);
@@ -118,7 +118,7 @@ TEST(TrackListByDds, KeepsWhatIsNoNumber) {
   const auto list = std::make_unique<TrackList>(list_of(1));
   list->tracks[0].heading_rad = std::numeric_limits<float>::quiet_NaN();
   list->tracks[0].covariance[0] = std::numeric_limits<float>::infinity();
-  const auto got = testing::received<perception::TrackListPubSubType>(sample_of(*list));
+  const auto got = samples::received<perception::TrackListPubSubType>(sample_of(*list));
   EXPECT_TRUE(std::isnan(got.tracks().at(0).heading_rad()));
   EXPECT_EQ(got.tracks().at(0).covariance()[0], std::numeric_limits<float>::infinity());
 }
