@@ -38,6 +38,7 @@ class Profiles : public testing::Test {
     publisher_ = participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT);
   }
   void TearDown() override {
+    if (participant_ == nullptr) return;
     participant_->delete_contained_entities();
     fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
   }
