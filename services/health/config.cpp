@@ -108,6 +108,8 @@ FileConfig read_config(config::Reader root) {
   c.dds.interfaces = dds.texts("interfaces", c.dds.interfaces);
   if (const auto problem = config::problem_of_interfaces(c.dds.interfaces)) dds.reject("interfaces", *problem);
   c.dds.period_s = dds.number("period_s", {0.1, 60.0}, c.dds.period_s);
+  c.dds.tracks = dds.boolean("tracks", c.dds.tracks);
+  c.dds.tracks_period_s = dds.number("tracks_period_s", {0.0, 10.0}, c.dds.tracks_period_s);
   c.dds.farewell_s = dds.number("farewell_s", {0.0, 2.0}, c.dds.farewell_s);
   c.dds.command_key_file = dds.text("command_key_file", c.dds.command_key_file);
   root.finish();

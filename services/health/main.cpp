@@ -24,11 +24,22 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   health::Outlet outlet(node, vehicle, config.dds, supervision.faults(), key);
   runtime::Publisher<HealthReport> reports(node);
   node.publishes_periodically(catalogue::TopicId::kHealthReport);
-  node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<ServiceStatus>([&](const ServiceStatus& m) {
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    supervision.observe(m, now_ns);
+    outlet.pass_on(m, now_ns);
+  });
   node.on<EgoMotion>([&](const EgoMotion& m) { supervision.observe(m); });
-  node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });
+  node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) {
+    supervision.observe(m);
+    outlet.pass_on(m, runtime::monotonic_now_ns());
+  });
   // Before the scans: after a pause of this service, scans without their track lists would look like a silent pipeline.
-  node.on<TrackList>([&](const TrackList& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<TrackList>([&](const TrackList& m) {
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    supervision.observe(m, now_ns);
+    outlet.pass_on(m, now_ns);
+  });
   node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
 
   const auto sent = std::make_unique<HealthReport>();

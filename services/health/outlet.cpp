@@ -13,6 +13,7 @@ namespace boresight::health {
 
 namespace {
 constexpr std::int64_t kRetryPeriod_ns = 5'000'000'000;
+constexpr const char* kRejection = "the middleware rejected a sample";
 }  // namespace
 
 dds::CommandKey command_key_of(const dds::Config& config) {
@@ -49,8 +50,11 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
     const std::string reason = now_ns >= retry_ns_ ? open(now_ns) : problem_;
     if (problem.empty()) problem = reason;
   }
-  if (channel_ && !channel_->reports.write(report, runtime::realtime_now_ns()) && problem.empty()) {
-    problem = "the middleware rejected a sample";
+  if (channel_) {
+    const dds::Now now = moment(now_ns);
+    const bool are_services_taken = channel_->topics.write(report, now);
+    const bool is_report_taken = channel_->reports.write(report, now.epoch_ns);
+    if (!(are_services_taken && is_report_taken) && problem.empty()) problem = kRejection;
   }
   report_mute(problem, now_ns);
 }
@@ -62,8 +66,18 @@ void Outlet::serve(std::int64_t now_ns) {
   }
 }
 
+dds::Now Outlet::moment(std::int64_t now_ns) {
+  return {.monotonic_ns = now_ns, .epoch_ns = runtime::realtime_now_ns()};
+}
+
+void Outlet::report_rejection() {
+  node_.fault(Fault::kLink, std::string("DDS: ") + kRejection);
+}
+
 void Outlet::end() {
-  if (channel_) channel_->reports.end(runtime::realtime_now_ns(), config_.farewell_s);
+  if (!channel_) return;
+  channel_->topics.end();
+  channel_->reports.end(runtime::realtime_now_ns(), config_.farewell_s);
 }
 
 std::string Outlet::look_at_interfaces() {

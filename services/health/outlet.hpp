@@ -13,6 +13,7 @@
 #include "services/health/dds/diagnostics_writer.hpp"
 #include "services/health/dds/fault_memory_server.hpp"
 #include "services/health/dds/participant.hpp"
+#include "services/health/dds/topic_publisher.hpp"
 
 namespace boresight::health {
 
@@ -30,6 +31,11 @@ class Outlet {
 
   /// Sends if `at_once`, or if the configured period has passed since the last report.
   void write(const HealthReport& report, bool at_once, std::int64_t now_ns);
+  /// Passes on a TrackList, AlignmentEstimate or ServiceStatus.
+  template <typename Message>
+  void pass_on(const Message& message, std::int64_t now_ns) {
+    if (channel_ && !channel_->topics.write(message, moment(now_ns))) report_rejection();
+  }
   /// Sends what changed in the fault memory, and executes commands that were received.
   void serve(std::int64_t now_ns);
   /// At the orderly end of the service: tells the readers.
@@ -41,12 +47,16 @@ class Outlet {
     Channel(const dds::Config& config, const VehicleConfig& vehicle, FaultMemory& faults, const dds::CommandKey& key)
         : participant(config, "boresight-health"),
           reports(participant, vehicle),
+          topics(participant, config, vehicle),
           faults(participant, vehicle, faults, key) {}
     dds::Participant participant;  // first member: it outlives its writers
     dds::DiagnosticsWriter reports;
+    dds::TopicPublisher topics;
     dds::FaultMemoryServer faults;
   };
 
+  [[nodiscard]] static dds::Now moment(std::int64_t now_ns);
+  void report_rejection();
   /// Compares the interfaces with those of the participant; leaves the domain if it must be joined anew. Returns what
   /// is wrong with them.
   std::string look_at_interfaces();

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/diagnostics_topics.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/boresight/terminal/output_file.hpp"
@@ -36,6 +37,7 @@ struct DiagnosticsOptions {
   std::optional<std::uint32_t> domain;
   std::vector<std::string> interfaces;
   bool array = false;
+  TopicChoice topics;
   bool all = false;
   std::string json;  ///< file, "-" for standard output; empty: text
   std::uint64_t count = 0;
@@ -136,7 +138,9 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   StateChanges changes;
   SystemChanges system_changes;
   dds::DiagnosticsCallbacks callbacks;
-  if (options.array) {
+  if (options.topics.any()) {
+    // Health is not read.
+  } else if (options.array) {
     callbacks.on_diagnostic_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
       printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
     };
@@ -157,6 +161,11 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   };
   const dds::Config config = dds_of(options);
   std::optional<dds::DiagnosticsReader> reader(std::in_place, config, std::move(callbacks));
+  std::optional<dds::TopicReader> topic_reader;
+  if (options.topics.any()) {
+    const auto print = [&printer](const std::string& text) { printer.print(text); };
+    topic_reader.emplace(config, printing(options.topics, is_json, print));
+  }
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -167,6 +176,7 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   reader.reset();  // no further lines
+  topic_reader.reset();
   printer.commit();
   int result = exit_code::kSuccess;
   if (printer.printed() < std::max<std::uint64_t>(options.count, 1)) {
@@ -200,9 +210,10 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
           "Name or IPv4 address of a network interface to use, or \"all\"; repeatable; default: dds.interfaces "
           "of health.toml")
       ->type_name("NAME|ADDRESS");
-  command->add_flag(
+  auto* const array = command->add_flag(
       "--array", options->array,
       "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");
+  add_topic_options(*command, options->topics, array);
   command->add_flag("--all", options->all, "Prints every sample, not only changed states");
   add_json_option(*command, options->json,
                   "A line of JSON for each sample; without FILE, or with \"-\": to standard output");

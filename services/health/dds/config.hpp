@@ -13,7 +13,9 @@ struct Config {
   /// Names or IPv4 addresses of network interfaces, or "all". By default no other machine can listen or interfere.
   std::vector<std::string> interfaces = {"127.0.0.1"};
   double period_s = 1.0;
-  double farewell_s = 0.2;  ///< longest time that the end of the service waits for readers to learn of it
+  bool tracks = true;             ///< whether track lists are sent
+  double tracks_period_s = 0.05;  ///< one track list in this time; 0: every list
+  double farewell_s = 0.2;        ///< longest time that the end of the service waits for readers to learn of it
   /// File with the secret of those who may command; "": nobody may.
   std::string command_key_file;
 };

@@ -39,6 +39,11 @@ class Walk {
     return value;
   }
   void text() { skip(number()); }
+  /// Skips `count` numbers of `bytes` bytes each.
+  void numbers(std::size_t count, std::size_t bytes) {
+    skip((bytes - position_ % bytes) % bytes);
+    skip(count * bytes);
+  }
   /// Length of a sequence whose elements have at least that size; 0 after a failure.
   std::uint32_t length(std::size_t smallest_element_bytes) {
     const std::uint32_t announced = number();
@@ -53,7 +58,50 @@ class Walk {
   bool is_good_ = false;
 };
 
+constexpr std::size_t kByte = 1, kWord = 4, kDoubleWord = 8;
+
 }  // namespace
+
+template <>
+bool sequences_fit<perception::TrackList>(std::span<const std::uint8_t> payload) {
+  constexpr std::size_t kTrackWords = 20 + 6 + 49;  // numbers up to `flags`, class probabilities, covariance
+  constexpr std::uint32_t kMostTracks = 128;
+  Walk walk(payload);
+  walk.text();                    // vehicle_name
+  walk.numbers(2, kDoubleWord);   // times
+  walk.numbers(3, kWord);         // time_source, layout_version, radar_id
+  walk.numbers(10, kDoubleWord);  // sequence numbers, stages
+  walk.numbers(5, kWord);         // number_of_confirmed_tracks to likelihood_evaluations
+  return walk.length(kTrackWords * kWord) <= kMostTracks && walk.is_good();
+}
+
+template <>
+bool sequences_fit<diagnostics::ServiceStatus>(std::span<const std::uint8_t> payload) {
+  constexpr std::size_t kSmallestFault_bytes = 3 * kWord;  // a text and a count
+  constexpr std::size_t kSource_bytes = 2 * kWord + 8 * kDoubleWord;
+  constexpr std::uint32_t kMostFaults = 32, kMostSources = 16;
+  Walk walk(payload);
+  walk.text();  // service_name, vehicle_name
+  walk.text();
+  walk.numbers(1, kDoubleWord);  // time_ns
+  walk.numbers(1, kWord);        // condition
+  walk.skip(kByte);              // deadline_missed
+  walk.numbers(5, kWord);        // last_heartbeat_s to restarts
+  walk.numbers(3, kDoubleWord);  // lost, dropped, rejected
+  walk.skip(kByte);              // has_heartbeat
+  walk.numbers(2, kWord);        // layout_version, service_index
+  walk.numbers(3, kDoubleWord);  // sequence_number to incarnation_ns
+  walk.numbers(2, kWord);        // pid, state
+  walk.numbers(3, kDoubleWord);  // inputs, outputs, heap_allocations
+  walk.numbers(6, kWord);        // processing_mean_us to queueing_max_us
+  const std::uint32_t faults = walk.length(kSmallestFault_bytes);
+  if (faults > kMostFaults) return false;
+  for (std::uint32_t i = 0; i < faults && walk.is_good(); ++i) {
+    walk.text();
+    walk.numbers(1, kDoubleWord);
+  }
+  return walk.length(kSource_bytes) <= kMostSources && walk.is_good();
+}
 
 template <>
 bool sequences_fit<diagnostic_msgs::msg::dds_::DiagnosticArray_>(std::span<const std::uint8_t> payload) {

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "generated/diagnostic_array.h"
+#include "generated/service_status.h"
+#include "generated/track_list.h"
 
 namespace boresight::dds {
 
@@ -19,5 +21,11 @@ template <typename Sample>
 /// element must have its smallest size on the wire, and the texts their announced length.
 template <>
 [[nodiscard]] bool sequences_fit<diagnostic_msgs::msg::dds_::DiagnosticArray_>(std::span<const std::uint8_t> payload);
+
+/// At most as many tracks, faults and sources as the IDL allows, each of which must have been received.
+template <>
+[[nodiscard]] bool sequences_fit<perception::TrackList>(std::span<const std::uint8_t> payload);
+template <>
+[[nodiscard]] bool sequences_fit<diagnostics::ServiceStatus>(std::span<const std::uint8_t> payload);
 
 }  // namespace boresight::dds

@@ -11,6 +11,7 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 #include "services/health/core/faults/event.hpp"
+#include "services/health/dds/alignment.hpp"
 #include "services/health/dds/system_health.hpp"
 
 namespace boresight::dds {
@@ -35,24 +36,6 @@ diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
   out.beyond_tolerance(axis.beyond_tolerance != 0);
   out.about_vehicle_axis(axis.about_vehicle_axis != 0);
   out.effect(static_cast<diagnostics::AxisEffect>(axis.effect));
-  return out;
-}
-
-diagnostics::MountingDrift to_drift(const AlignmentDrift& drift) {
-  diagnostics::MountingDrift out;
-  out.since_ns(drift.since_ns);
-  out.yaw_radps(drift.yaw_radps);
-  out.yaw_std_radps(drift.yaw_std_radps);
-  out.pitch_radps(drift.pitch_radps);
-  out.pitch_std_radps(drift.pitch_std_radps);
-  return out;
-}
-
-diagnostics::VehicleChange to_change(const AlignmentVehicleChange& change) {
-  diagnostics::VehicleChange out;
-  out.time_ns(change.time_ns);
-  out.size(change.size);
-  out.count(change.count);
   return out;
 }
 

@@ -84,13 +84,36 @@ inline constexpr TopicQos kCommandTopic =
 inline constexpr TopicQos kCommandReplyTopic =
     on_change("boresight/fault_memory_reply", 4, 16, 1, kKibibyte, Durability::kTransientLocal);
 
+/// Lists replace one another, and come only while scans do: no deadline. The lifespan is that of `track_list` in the
+/// catalogue: positions of earlier lists are of no use. The lease of 1.5 s is a choice, as in periodic().
+inline constexpr TopicQos kTrackListTopic{.name = "boresight/track_list",
+                                          .written_depth = 1,
+                                          .read_depth = 1,
+                                          .most_instances = kMostVehicles,
+                                          .most_bytes = 48 * kKibibyte,
+                                          .reliability = Reliability::kBestEffort,
+                                          .durability = Durability::kVolatile,
+                                          .period_s = 0.25,
+                                          .lease_periods = 6.0,
+                                          .lifespan_periods = 1.0};
+/// Estimates come only while scans do: no deadline. The latest one stays of use.
+inline constexpr TopicQos kAlignmentTopic{.name = "boresight/alignment_estimate",
+                                          .written_depth = 1,
+                                          .read_depth = 1,
+                                          .most_instances = kMaxRadars,
+                                          .most_bytes = 4 * kKibibyte,
+                                          .lease_periods = 1.5};
+inline constexpr TopicQos kServiceStatusTopic = periodic("boresight/service_status", 1, kMaxServices, 8 * kKibibyte);
+
 /// All of them.
-inline constexpr std::array kTopics = {kSensorHealthTopic,     kSystemHealthTopic, kDiagnosticsTopic, kFaultRecordTopic,
-                                       kFaultMemoryStateTopic, kCommandTopic,      kCommandReplyTopic};
+inline constexpr std::array kTopics = {
+    kSensorHealthTopic, kSystemHealthTopic, kDiagnosticsTopic, kFaultRecordTopic, kFaultMemoryStateTopic,
+    kCommandTopic,      kCommandReplyTopic, kTrackListTopic,   kAlignmentTopic,   kServiceStatusTopic};
 
 namespace detail {
 constexpr bool requests_match_offers() {
   for (const TopicQos& topic : kTopics) {
+    if (topic.requested_periods <= 0.0) continue;  // anything is good enough
     if (topic.requested_periods < topic.deadline_periods || topic.requested_periods < topic.lease_periods) return false;
   }
   return true;

@@ -72,6 +72,8 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(read.dds.interfaces, diagnostics.interfaces);
   EXPECT_EQ(read.dds.period_s, diagnostics.period_s);
   EXPECT_EQ(read.dds.farewell_s, diagnostics.farewell_s);
+  EXPECT_EQ(read.dds.tracks, diagnostics.tracks);
+  EXPECT_EQ(read.dds.tracks_period_s, diagnostics.tracks_period_s);
   EXPECT_THAT(read.dds.interfaces, testing::ElementsAre("127.0.0.1")) << "no other machine can listen";
   EXPECT_EQ(read.dds.command_key_file, "") << "nobody may command unless the integrator wants it";
 }

@@ -12,8 +12,11 @@
 #include "services/boresight/align/json.hpp"
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
+#include "services/boresight/diagnostics/alignment_text.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/boresight/diagnostics/fault_text.hpp"
+#include "services/boresight/diagnostics/service_text.hpp"
+#include "services/boresight/diagnostics/track_text.hpp"
 #include "services/boresight/fit_evidence/report.hpp"
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
@@ -216,6 +219,64 @@ inline std::vector<std::string> system_healths() {
   return {diagnostics_text::to_json(system), diagnostics_text::to_json(unknown)};
 }
 
+/// All floats of these samples, so that a value that is not known is seen everywhere.
+template <typename... Arrays>
+void fill_with_nothing(Arrays&... arrays) {
+  (arrays.fill(std::nanf("")), ...);
+}
+
+inline std::vector<std::string> track_lists() {
+  const float nothing = std::nanf("");
+  perception::TrackList list;
+  list.vehicle_name(kName);
+  perception::Track track;
+  track.age_s(nothing);
+  track.time_since_update_s(nothing);
+  track.existence_probability(nothing);
+  track.mirror_probability(nothing);
+  track.heading_rad(nothing);
+  track.length_m(nothing);
+  track.width_m(nothing);
+  track.height_m(nothing);
+  fill_with_nothing(track.position_vehicle_m(), track.velocity_over_ground_mps(), track.class_probability(),
+                    track.covariance());
+  list.tracks() = {perception::Track(), track};
+  return {diagnostics_text::to_json(list)};
+}
+
+inline std::vector<std::string> alignment_samples() {
+  const float nothing = std::nanf("");
+  diagnostics::AlignmentEstimate estimate;
+  estimate.radar_name(kName);
+  diagnostics::AlignmentEstimate unknown;
+  unknown.finding_value(nothing);
+  unknown.speed_scale(nothing);
+  unknown.alignment_yaw_rad(nothing);
+  unknown.vehicle_roll_rad(nothing);
+  unknown.yaw_rate_bias_radps(nothing);
+  unknown.load_change().size(nothing);
+  unknown.drift().yaw_radps(nothing);
+  unknown.nuisance().time_offset_s().value(nothing);
+  unknown.kpis().nees(nothing);
+  fill_with_nothing(unknown.covariance(), unknown.vehicle_covariance(), unknown.step_change().rotation_vehicle_rad(),
+                    unknown.nuisance().azimuth_curve_rad(), unknown.kpis().seconds_to_95_percent(),
+                    unknown.kpis().drift_per_minute());
+  return {diagnostics_text::to_json(estimate), diagnostics_text::to_json(unknown)};
+}
+
+inline std::vector<std::string> service_statuses() {
+  diagnostics::ServiceStatus status;
+  status.vehicle_name(kName);
+  diagnostics::FaultCount fault;
+  fault.name("input lost");
+  status.faults().push_back(fault);
+  status.sources().emplace_back();
+  diagnostics::ServiceStatus unknown;
+  unknown.last_heartbeat_s(std::nanf(""));
+  unknown.processing_max_us(std::nanf(""));
+  return {diagnostics_text::to_json(status), diagnostics_text::to_json(unknown)};
+}
+
 inline std::vector<std::string> fault_records() {
   diagnostics::FaultRecord record;
   diagnostics::FaultRecord unknown;
@@ -267,6 +328,9 @@ inline std::map<std::string, std::vector<Value>> written() {
       {"boresight diagnostics: system", system_healths()},
       {"boresight diagnostics: stale", presences()},
       {"boresight diagnostics --array", diagnostic_arrays()},
+      {"boresight diagnostics --tracks", track_lists()},
+      {"boresight diagnostics --alignment", alignment_samples()},
+      {"boresight diagnostics --services", service_statuses()},
       {"boresight dtc list", fault_records()},
   };
   std::map<std::string, std::vector<Value>> values;
