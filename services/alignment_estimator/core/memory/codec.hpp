@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <span>
 
-#include "services/alignment_estimator/core/memory/identity.hpp"
+#include "services/common/vehicle/identity.hpp"
 #include "services/alignment_estimator/core/memory/memory.hpp"
 
 namespace boresight::alignment {

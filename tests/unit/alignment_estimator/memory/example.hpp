@@ -1,7 +1,7 @@
 // A vehicle, and a memory that an estimator may have learnt on it.
 #pragma once
 
-#include "services/alignment_estimator/core/memory/identity.hpp"
+#include "services/common/vehicle/identity.hpp"
 #include "services/alignment_estimator/core/memory/memory.hpp"
 
 namespace boresight::alignment {
