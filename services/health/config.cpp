@@ -126,6 +126,10 @@ FileConfig read_config(config::Reader root) {
   s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
   read_pipeline(root, s.pipeline);
   read_faults(root, s.faults, c.fault_store);
+  config::Reader levels = root.table("learnt_levels");
+  c.level_store.enabled = levels.boolean("enabled", c.level_store.enabled);
+  c.level_store.path = levels.text("path", c.level_store.path);
+  c.level_store.write_period_s = levels.number("write_period_s", {5.0, 3600.0}, c.level_store.write_period_s);
   config::Reader dds = root.table("dds");
   c.dds.enabled = dds.boolean("enabled", c.dds.enabled);
   c.dds.domain = static_cast<std::uint32_t>(dds.integer("domain", {0.0, kHighestDomain}, c.dds.domain));
