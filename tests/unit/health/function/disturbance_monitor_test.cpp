@@ -8,13 +8,13 @@
 namespace boresight::health {
 namespace {
 
-constexpr double kSpeed_mps = 14.0;
-constexpr double kDetections = 120.0;
-constexpr double kUsual = 10.0;
-
 /// Scans at 20 Hz of a radar whose unexplained detections follow a rate that changes within seconds.
 class DisturbanceMonitorTest : public testing::Test {
  protected:
+  static constexpr double kSpeed_mps = 14.0;
+  static constexpr double kDetections = 120.0;
+  static constexpr double kUsual = 10.0;
+
   /// `added`: random detections of interference in each scan.
   void run(double seconds, double added = 0.0, double speed_mps = kSpeed_mps) {
     std::normal_distribution<double> unit;

@@ -71,7 +71,9 @@ TEST_F(UnexplainedDetectionsTest, StationaryReflectorsThatFlickerAreExplainedInA
     begin_scan();
     for (int i = 0; i < 100; ++i) add_stationary(range_m(random_), azimuth_rad(random_), i % 2 == 0 ? 0.3 : -0.3);
     const double count = unexplained();
-    if (k > 0) EXPECT_EQ(count, 0.0);
+    if (k > 0) {
+      EXPECT_EQ(count, 0.0);
+    }
   }
 }
 
@@ -81,7 +83,9 @@ TEST_F(UnexplainedDetectionsTest, AMovingObjectIsSeenAgainWhereItsRangeRatePredi
     add(100.0 - 70.0 * kInterval_s * k, 0.3, -70.0);
     add(40.0, -0.5, 12.0 + 0.5 * k);
     const double count = unexplained();
-    if (k > 0) EXPECT_EQ(count, 0.0);
+    if (k > 0) {
+      EXPECT_EQ(count, 0.0);
+    }
   }
 }
 
@@ -107,7 +111,9 @@ TEST_F(UnexplainedDetectionsTest, RangeRatesThatFoldAreComparedWithinTheUnambigu
     begin_scan();
     for (int i = 0; i < 20; ++i) add_stationary(20.0 + 3.0 * (i + k), -1.0 + 0.1 * i, 20.0 * (i % 3 - 1));
     const double count = unexplained();
-    if (k > 0) EXPECT_EQ(count, 0.0);
+    if (k > 0) {
+      EXPECT_EQ(count, 0.0);
+    }
   }
 }
 
@@ -131,7 +137,9 @@ TEST_F(UnexplainedDetectionsTest, UnusableDetectionsDoNotCount) {
     begin_scan();
     add(30.0 + 40.0 * k, 0.0, 50.0, detection_flag::kUnusable);
     const double count = unexplained();
-    if (k > 0) EXPECT_EQ(count, 0.0);
+    if (k > 0) {
+      EXPECT_EQ(count, 0.0);
+    }
   }
 }
 
