@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace log = runtime::log;
 
-constexpr Event kLost{EventKind::kLevelsLost};
+constexpr Event kLevelsLost{EventKind::kLevelsLost};
 
 Fault fault_of(StoredLevels verdict) {
   return verdict == StoredLevels::kOtherVersion ? Fault::kVersionMismatch : Fault::kWireValue;
@@ -42,7 +42,7 @@ LevelStore::LevelStore(runtime::Node& node, Supervision& supervision, const Vehi
 void LevelStore::lose(const fs::path& file, const std::string& reason, Fault fault) {
   node_.fault(fault, "stored levels are " + reason);
   log::warning("{}: stored levels are {}", file.string(), reason);
-  supervision_.faults().report_once(kLost, runtime::monotonic_now_ns(), frame_now(supervision_.faults()));
+  supervision_.faults().report_once(kLevelsLost, runtime::monotonic_now_ns(), frame_now(supervision_.faults()));
 }
 
 void LevelStore::restore(const fs::path& file) {

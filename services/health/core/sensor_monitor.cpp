@@ -122,8 +122,7 @@ void SensorMonitor::observe_content(const RadarScan& scan, std::int64_t now_ns) 
   seen.is_sound = is_sound(scan);
   sight_monitor_.observe(seen, motion_.speed_mps, now_ns);
   // Data that are proven wrong are no disturbance.
-  const std::optional<ExplainedScan> explained =
-      seen.is_sound ? unexplained_.explain(scan, motion_) : std::nullopt;
+  const std::optional<ExplainedScan> explained = seen.is_sound ? unexplained_.explain(scan, motion_) : std::nullopt;
   if (explained) {
     disturbance_.observe(*explained, motion_.speed_mps, now_ns);
   } else {

@@ -39,7 +39,7 @@ enum class StoredLevels : std::uint8_t {
                                         std::span<std::uint8_t> out);
 
 /// Writes `levels`, which are unchanged unless the verdict is kTaken. Radars whose mounting or profile has changed
-/// since are left out and counted.
+/// since are not included, and counted.
 [[nodiscard]] StoredLevels decode_levels(std::span<const std::uint8_t> bytes, const LevelsIdentity& identity,
                                          VehicleLevels& levels, std::size_t& rejected_radars);
 

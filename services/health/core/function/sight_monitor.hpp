@@ -22,8 +22,9 @@ struct SightConfig {
   double passing_share = 0.7;   ///< of the deviation at which a test fails, above which it passes (choice: hysteresis)
   double blind_ratio = 0.11;    ///< share of the usual detections or range, below: blind (choice)
   double unusual_share = 0.05;  ///< weight in learning of what is not usual, so that no error lasts (choice)
-  double least_detections = 2.0;  ///< fewer over `learning_s` of motion: blind, before a level is known (choice: strays)
-  double least_range_m = 10.0;    ///< that the detections reach, likewise (measured: 80 m in RadarScenes)
+  double least_detections =
+      2.0;                      ///< fewer over `learning_s` of motion: blind, before a level is known (choice: strays)
+  double least_range_m = 10.0;  ///< that the detections reach, likewise (measured: 80 m in RadarScenes)
 };
 
 /// A scan as the monitor sees it.

@@ -19,9 +19,8 @@ std::size_t UnexplainedDetections::collect(const RadarScan& scan, const VehicleM
       to_vehicle_.transpose() * geometry::sensor_velocity(1.0, motion.speed_mps, motion.yaw_rate_radps, position_m_);
   const double tolerance_mps =
       config_.stationary_tolerance_mps + config_.stationary_tolerance_ratio * velocity_mps.norm();
-  const double interval_mps = scan.has(scan_field::kAmbiguity)
-                                  ? static_cast<double>(scan.range_rate_max_mps) - scan.range_rate_min_mps
-                                  : 0.0;
+  const double interval_mps =
+      scan.has(scan_field::kAmbiguity) ? static_cast<double>(scan.range_rate_max_mps) - scan.range_rate_min_mps : 0.0;
   std::size_t usable = 0;
   moving.count = 0;
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
@@ -55,8 +54,7 @@ std::size_t UnexplainedDetections::count_new(const MovingOnes& before, const Mov
     bool is_seen_again = false;
     for (; other != end && other->range_m <= range_m + distance_m && !is_seen_again; ++other) {
       const float across_m = std::abs(one.azimuth_rad - other->azimuth_rad) * one.range_m;
-      is_seen_again =
-          std::abs(one.range_rate_mps - other->range_rate_mps) <= range_rate_mps && across_m <= distance_m;
+      is_seen_again = std::abs(one.range_rate_mps - other->range_rate_mps) <= range_rate_mps && across_m <= distance_m;
     }
     if (!is_seen_again) ++unexplained;
   }

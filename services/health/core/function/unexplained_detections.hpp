@@ -17,9 +17,9 @@ struct ExplanationConfig {
   /// of the weakest, micro-motion) and a share of the speed (choice: an error of 3° in direction).
   double stationary_tolerance_mps = 2.0;
   double stationary_tolerance_ratio = 0.05;
-  double neighbour_distance_m = 5.0;         ///< within which a moving object is seen again (choice: a car's length)
-  double neighbour_range_rate_mps = 2.5;     ///< largest difference of its range rates (choice: turning and braking)
-  double longest_interval_s = 0.3;           ///< from scan to scan, in which an object stays in place (choice)
+  double neighbour_distance_m = 5.0;      ///< within which a moving object is seen again (choice: a car's length)
+  double neighbour_range_rate_mps = 2.5;  ///< largest difference of its range rates (choice: turning and braking)
+  double longest_interval_s = 0.3;        ///< from scan to scan, in which an object stays in place (choice)
 };
 
 /// Motion of the vehicle that the range rates are compared with.

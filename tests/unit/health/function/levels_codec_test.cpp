@@ -84,9 +84,9 @@ TEST_F(LevelsCodec, EveryChangedByteAndEveryTruncationIsRefused) {
 }
 
 TEST_F(LevelsCodec, ImpossibleValuesAreRefused) {
-  for (const StoredLevel& level : {StoredLevel{std::numeric_limits<double>::quiet_NaN(), 0.1, 1.0},
-                                   StoredLevel{1.0, -0.1, 1.0}, StoredLevel{1.0, 0.1, -1.0},
-                                   StoredLevel{1e9, 0.1, 1.0}}) {
+  for (const StoredLevel& level :
+       {StoredLevel{std::numeric_limits<double>::quiet_NaN(), 0.1, 1.0}, StoredLevel{1.0, -0.1, 1.0},
+        StoredLevel{1.0, 0.1, -1.0}, StoredLevel{1e9, 0.1, 1.0}}) {
     VehicleLevels levels = example();
     levels.radars[0].sight.log_range = level;
     encode(levels);

@@ -86,7 +86,8 @@ TEST_F(SightMonitorTest, ASlowVehicleIsNotJudgedAndTheVerdictIsTheCallersToKeep)
 }
 
 TEST_F(SightMonitorTest, EmptyListsAndNearOnesFromTheFirstStartAreBlindAfterTheLearningTime) {
-  for (const auto& [detections, range_m] : {std::pair{0.0, 0.0}, std::pair{1.0, kRange_m}, std::pair{kDetections, 6.0}}) {
+  for (const auto& [detections, range_m] :
+       {std::pair{0.0, 0.0}, std::pair{1.0, kRange_m}, std::pair{kDetections, 6.0}}) {
     monitor_ = SightMonitor();
     scene_ = 0.0;
     EXPECT_LT(seconds_until_blind(detections, range_m), 13.0) << detections << " detections within " << range_m << " m";
