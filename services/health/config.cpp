@@ -74,6 +74,7 @@ void read_disturbance(config::Reader& root, DisturbanceConfig& c) {
   e.stationary_tolerance_ratio = table.number("stationary_tolerance_ratio", {0.0, 0.3}, e.stationary_tolerance_ratio);
   e.neighbour_distance_m = table.number("neighbour_distance_m", {0.5, 20.0}, e.neighbour_distance_m);
   e.neighbour_range_rate_mps = table.number("neighbour_range_rate_mps", {0.2, 10.0}, e.neighbour_range_rate_mps);
+  e.fastest_reverse_mps = table.number("fastest_reverse_mps", {0.0, 20.0}, e.fastest_reverse_mps);
   e.longest_interval_s = table.number("longest_interval_s", {0.05, 1.0}, e.longest_interval_s);
   c.least_speed_mps = table.number("least_speed_mps", {1.0, 30.0}, c.least_speed_mps);
   c.smoothing_s = table.number("smoothing_s", {0.1, 10.0}, c.smoothing_s);

@@ -136,6 +136,7 @@ void SensorMonitor::observe_content(const RadarScan& scan, std::int64_t now_ns) 
 
 void SensorMonitor::observe(const EgoMotion& motion) {
   motion_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<double>::quiet_NaN();
+  motion_.is_signed = motion.has(ego_field::kReverse);
   motion_.yaw_rate_radps = motion.has(ego_field::kYawRate) ? motion.yaw_rate_radps : 0.0;
 }
 

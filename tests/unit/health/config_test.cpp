@@ -47,6 +47,7 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(d.explanation.stationary_tolerance_ratio, usual.explanation.stationary_tolerance_ratio);
   EXPECT_EQ(d.explanation.neighbour_distance_m, usual.explanation.neighbour_distance_m);
   EXPECT_EQ(d.explanation.neighbour_range_rate_mps, usual.explanation.neighbour_range_rate_mps);
+  EXPECT_EQ(d.explanation.fastest_reverse_mps, usual.explanation.fastest_reverse_mps);
   EXPECT_EQ(d.explanation.longest_interval_s, usual.explanation.longest_interval_s);
   EXPECT_EQ(d.least_speed_mps, usual.least_speed_mps);
   EXPECT_EQ(d.smoothing_s, usual.smoothing_s);

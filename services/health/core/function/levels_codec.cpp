@@ -29,9 +29,9 @@ bool is_possible(const StoredLevel& level) {
 LevelsIdentity levels_identity_of(const VehicleConfig& vehicle, const Config& config) {
   state::Fingerprint print;
   const ExplanationConfig& e = config.disturbance.explanation;
-  for (const double value :
-       {config.sight.range_quantile, config.sight.smoothing_s, config.disturbance.smoothing_s,
-        e.stationary_tolerance_mps, e.stationary_tolerance_ratio, e.neighbour_distance_m, e.neighbour_range_rate_mps}) {
+  for (const double value : {config.sight.range_quantile, config.sight.smoothing_s, config.disturbance.smoothing_s,
+                             e.stationary_tolerance_mps, e.stationary_tolerance_ratio, e.neighbour_distance_m,
+                             e.neighbour_range_rate_mps, e.fastest_reverse_mps}) {
     print.add(value);
   }
   return {.vehicle = identity_of(vehicle), .quantities = print.value()};

@@ -15,8 +15,11 @@ UnexplainedDetections::UnexplainedDetections(const RadarConfig& radar, const Exp
 std::size_t UnexplainedDetections::collect(const RadarScan& scan, const VehicleMotion& motion,
                                            MovingOnes& moving) const {
   // In sensor axes: one rotation a scan instead of one a detection.
-  const Eigen::Vector3d velocity_mps =
-      to_vehicle_.transpose() * geometry::sensor_velocity(1.0, motion.speed_mps, motion.yaw_rate_radps, position_m_);
+  const auto velocity_at = [&](double speed_mps) -> Eigen::Vector3d {
+    return to_vehicle_.transpose() * geometry::sensor_velocity(1.0, speed_mps, motion.yaw_rate_radps, position_m_);
+  };
+  const Eigen::Vector3d velocity_mps = velocity_at(motion.speed_mps), reverse_mps = velocity_at(-motion.speed_mps);
+  const bool may_reverse = !motion.is_signed && std::abs(motion.speed_mps) <= config_.fastest_reverse_mps;
   const double tolerance_mps =
       config_.stationary_tolerance_mps + config_.stationary_tolerance_ratio * velocity_mps.norm();
   const double interval_mps =
@@ -27,11 +30,13 @@ std::size_t UnexplainedDetections::collect(const RadarScan& scan, const VehicleM
   for (std::size_t i = 0; i < count; ++i) {
     if ((scan.detection_flags[i] & detection_flag::kUnusable) != 0) continue;
     ++usable;
-    const double expected_mps =
-        geometry::stationary_range_rate(geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]), velocity_mps);
-    double deviation_mps = scan.range_rate_mps[i] - expected_mps;
-    if (interval_mps > 0.0) deviation_mps = std::remainder(deviation_mps, interval_mps);
-    if (std::abs(deviation_mps) <= tolerance_mps) continue;
+    const Eigen::Vector3d line = geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]);
+    const auto is_stationary = [&](const Eigen::Vector3d& sensor_mps) {
+      const double deviation_mps = scan.range_rate_mps[i] - geometry::stationary_range_rate(line, sensor_mps);
+      const double folded_mps = interval_mps > 0.0 ? std::remainder(deviation_mps, interval_mps) : deviation_mps;
+      return std::abs(folded_mps) <= tolerance_mps;
+    };
+    if (is_stationary(velocity_mps) || (may_reverse && is_stationary(reverse_mps))) continue;
     moving.detections[moving.count++] = {scan.range_m[i], scan.azimuth_rad[i], scan.range_rate_mps[i]};
   }
   std::sort(moving.detections.begin(), moving.detections.begin() + static_cast<std::ptrdiff_t>(moving.count),

@@ -19,13 +19,16 @@ struct ExplanationConfig {
   double stationary_tolerance_ratio = 0.05;
   double neighbour_distance_m = 5.0;      ///< within which a moving object is seen again (choice: a car's length)
   double neighbour_range_rate_mps = 2.5;  ///< largest difference of its range rates (choice: turning and braking)
-  double longest_interval_s = 0.3;        ///< from scan to scan, in which an object stays in place (choice)
+  /// Highest speed in reverse: up to it, a vehicle without a signal of its direction may do either (choice).
+  double fastest_reverse_mps = 10.0;
+  double longest_interval_s = 0.3;  ///< from scan to scan, in which an object stays in place (choice)
 };
 
 /// Motion of the vehicle that the range rates are compared with.
 struct VehicleMotion {
-  double speed_mps;       ///< NaN: unknown
-  double yaw_rate_radps;  ///< 0 if it is not known
+  double speed_mps;        ///< NaN: unknown
+  double yaw_rate_radps;   ///< 0 if it is not known
+  bool is_signed = false;  ///< the direction of travel is known and in the sign of the speed
 };
 
 /// Numbers of a scan.

@@ -132,6 +132,22 @@ TEST_F(UnexplainedDetectionsTest, WithoutSpeedOrAfterAPauseNothingIsKnown) {
   EXPECT_FALSE(detections_.explain(*scan_, kMotion)) << "objects have moved on";
 }
 
+TEST_F(UnexplainedDetectionsTest, WithoutASignalOfTheDirectionASlowVehicleMayMoveEitherWay) {
+  const auto unexplained_in_reverse = [this](double speed_mps, bool is_signed) {
+    double count = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      begin_scan();
+      // The vehicle moves backwards, and the reflectors flicker.
+      for (int i = 0; i < 20; ++i) add(20.0 + 13.0 * i + 6.5 * (k % 2), -0.87, speed_mps);
+      count = unexplained({.speed_mps = speed_mps, .yaw_rate_radps = 0.0, .is_signed = is_signed});
+    }
+    return count;
+  };
+  EXPECT_EQ(unexplained_in_reverse(6.0, false), 0.0);
+  EXPECT_GT(unexplained_in_reverse(6.0, true), 0.0);
+  EXPECT_GT(unexplained_in_reverse(15.0, false), 0.0);
+}
+
 TEST_F(UnexplainedDetectionsTest, UnusableDetectionsDoNotCount) {
   for (int k = 0; k < 2; ++k) {
     begin_scan();
