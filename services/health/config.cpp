@@ -50,6 +50,43 @@ void read_faults(config::Reader& root, FaultMemoryConfig& c, FaultStoreConfig& s
   }
 }
 
+void read_sight(config::Reader& root, SightConfig& c) {
+  config::Reader sight = root.table("sight");
+  c.least_speed_mps = sight.number("least_speed_mps", {1.0, 30.0}, c.least_speed_mps);
+  c.smoothing_s = sight.number("smoothing_s", {0.1, 10.0}, c.smoothing_s);
+  c.learning_s = sight.number("learning_s", {2.0, 600.0}, c.learning_s);
+  c.memory_s = sight.number("memory_s", {60.0, 36000.0}, c.memory_s);
+  c.least_log_count_std = sight.number("least_log_count_std", {0.1, 2.0}, c.least_log_count_std);
+  c.least_log_range_std = sight.number("least_log_range_std", {0.1, 2.0}, c.least_log_range_std);
+  c.sigma = sight.number("sigma", {2.0, 6.0}, c.sigma);
+  c.range_quantile = sight.number("range_quantile", {0.5, 1.0}, c.range_quantile);
+  c.passing_share = sight.number("passing_share", {0.1, 1.0}, c.passing_share);
+  c.blind_ratio = sight.number("blind_ratio", {0.01, 0.5}, c.blind_ratio);
+  c.unusual_share = sight.number("unusual_share", {0.0, 0.5}, c.unusual_share);
+  c.least_detections = sight.number("least_detections", {0.5, 20.0}, c.least_detections);
+  c.least_range_m = sight.number("least_range_m", {1.0, 50.0}, c.least_range_m);
+}
+
+void read_disturbance(config::Reader& root, DisturbanceConfig& c) {
+  config::Reader table = root.table("disturbance");
+  ExplanationConfig& e = c.explanation;
+  e.stationary_tolerance_mps = table.number("stationary_tolerance_mps", {0.2, 10.0}, e.stationary_tolerance_mps);
+  e.stationary_tolerance_ratio = table.number("stationary_tolerance_ratio", {0.0, 0.3}, e.stationary_tolerance_ratio);
+  e.neighbour_distance_m = table.number("neighbour_distance_m", {0.5, 20.0}, e.neighbour_distance_m);
+  e.neighbour_range_rate_mps = table.number("neighbour_range_rate_mps", {0.2, 10.0}, e.neighbour_range_rate_mps);
+  e.fastest_reverse_mps = table.number("fastest_reverse_mps", {0.0, 20.0}, e.fastest_reverse_mps);
+  e.longest_interval_s = table.number("longest_interval_s", {0.05, 1.0}, e.longest_interval_s);
+  c.least_speed_mps = table.number("least_speed_mps", {1.0, 30.0}, c.least_speed_mps);
+  c.smoothing_s = table.number("smoothing_s", {0.1, 10.0}, c.smoothing_s);
+  c.learning_s = table.number("learning_s", {2.0, 600.0}, c.learning_s);
+  c.memory_s = table.number("memory_s", {60.0, 36000.0}, c.memory_s);
+  c.least_log_std = table.number("least_log_std", {0.1, 2.0}, c.least_log_std);
+  c.sigma = table.number("sigma", {1.0, 6.0}, c.sigma);
+  c.least_share = table.number("least_share", {0.05, 0.9}, c.least_share);
+  c.passing_share = table.number("passing_share", {0.1, 1.0}, c.passing_share);
+  c.unusual_share = table.number("unusual_share", {0.0, 0.5}, c.unusual_share);
+}
+
 void read_pipeline(config::Reader& root, PipelineConfig& c) {
   config::Reader table = root.table("pipeline");
   c.window_s = table.number("window_s", {0.1, 0.35}, c.window_s);  // a longer window would delay the verdict
@@ -81,19 +118,8 @@ FileConfig read_config(config::Reader root) {
   s.max_suspect_ratio = supervision.number("max_suspect_ratio", {0.0, 0.9}, s.max_suspect_ratio);
   s.restart_memory_s = supervision.number("restart_memory_s", {0.0, 60.0}, s.restart_memory_s);
   s.start_grace_s = supervision.number("start_grace_s", {0.5, 60.0}, s.start_grace_s);
-  config::Reader sight = root.table("sight");
-  SightConfig& g = s.sight;
-  g.least_speed_mps = sight.number("least_speed_mps", {1.0, 30.0}, g.least_speed_mps);
-  g.smoothing_s = sight.number("smoothing_s", {0.1, 10.0}, g.smoothing_s);
-  g.learning_s = sight.number("learning_s", {2.0, 600.0}, g.learning_s);
-  g.memory_s = sight.number("memory_s", {60.0, 36000.0}, g.memory_s);
-  g.least_log_count_std = sight.number("least_log_count_std", {0.1, 2.0}, g.least_log_count_std);
-  g.least_log_range_std = sight.number("least_log_range_std", {0.1, 2.0}, g.least_log_range_std);
-  g.sigma = sight.number("sigma", {2.0, 6.0}, g.sigma);
-  g.range_quantile = sight.number("range_quantile", {0.5, 1.0}, g.range_quantile);
-  g.passing_share = sight.number("passing_share", {0.1, 1.0}, g.passing_share);
-  g.blind_ratio = sight.number("blind_ratio", {0.01, 0.5}, g.blind_ratio);
-  g.unusual_share = sight.number("unusual_share", {0.0, 0.5}, g.unusual_share);
+  read_sight(root, s.sight);
+  read_disturbance(root, s.disturbance);
   config::Reader misalignment = root.table("misalignment");
   s.confidence = misalignment.number("confidence", {0.9, 0.9999}, s.confidence);
   s.set_s = misalignment.number("set_s", {0.0, 60.0}, s.set_s);
@@ -102,6 +128,10 @@ FileConfig read_config(config::Reader root) {
   s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
   read_pipeline(root, s.pipeline);
   read_faults(root, s.faults, c.fault_store);
+  config::Reader levels = root.table("learnt_levels");
+  c.level_store.enabled = levels.boolean("enabled", c.level_store.enabled);
+  c.level_store.path = levels.text("path", c.level_store.path);
+  c.level_store.write_period_s = levels.number("write_period_s", {5.0, 3600.0}, c.level_store.write_period_s);
   config::Reader dds = root.table("dds");
   c.dds.enabled = dds.boolean("enabled", c.dds.enabled);
   c.dds.domain = static_cast<std::uint32_t>(dds.integer("domain", {0.0, kHighestDomain}, c.dds.domain));

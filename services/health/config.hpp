@@ -20,9 +20,17 @@ struct FaultStoreConfig {
   OperationCycle operation_cycle = OperationCycle::kBoot;
 };
 
+struct LevelStoreConfig {
+  bool enabled = true;
+  /// "": the file `levels` in systemd's $STATE_DIRECTORY; without that variable nothing is stored.
+  std::string path;
+  double write_period_s = 60.0;  ///< while something is learnt (choice: motion that a power cut may cost, against wear)
+};
+
 struct FileConfig {
   Config supervision;
   FaultStoreConfig fault_store;
+  LevelStoreConfig level_store;
   dds::Config dds;
 };
 

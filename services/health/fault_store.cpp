@@ -23,17 +23,19 @@ constexpr Event kUnwritable{EventKind::kFaultMemoryUnwritable};
 // A full medium is tried again at this period, not at each judgement.
 constexpr std::int64_t kWriteRetryPeriod_ns = 1'000'000'000;
 
-std::optional<fs::path> file_of(const FaultStoreConfig& config) {
-  if (!config.enabled) return std::nullopt;
-  if (!config.path.empty()) return config.path;
-  const char* const folder = std::getenv("STATE_DIRECTORY");
-  if (folder == nullptr || *folder == '\0') return std::nullopt;
-  return fs::path(folder) / "fault_memory";
-}
-
 std::string content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+std::optional<fs::path> state_file_of(bool enabled, const std::string& path, const char* name) {
+  if (!enabled) return std::nullopt;
+  if (!path.empty()) return path;
+  const char* const folder = std::getenv("STATE_DIRECTORY");
+  if (folder == nullptr || *folder == '\0') return std::nullopt;
+  return fs::path(folder) / name;
 }
 
 FreezeFrame frame_now(const FaultMemory& memory) {
@@ -44,11 +46,9 @@ FreezeFrame frame_now(const FaultMemory& memory) {
   return frame;
 }
 
-}  // namespace
-
 FaultStore::FaultStore(runtime::Node& node, FaultMemory& memory, const FaultStoreConfig& config)
     : node_(node), memory_(memory), bytes_(kMaxFaultMemoryBytes + 1) {
-  const std::optional<fs::path> file = file_of(config);
+  const std::optional<fs::path> file = state_file_of(config.enabled, config.path, "fault_memory");
   if (file) {
     restore(*file);
     writer_ = std::make_unique<runtime::StateWriter>(*file, bytes_.size());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "services/common/runtime/node.hpp"
@@ -37,6 +38,12 @@ class FaultStore {
   std::uint64_t reported_failures_ = 0;
   std::int64_t retry_ns_ = 0;
 };
+
+/// The configured file, or the one of that name in systemd's $STATE_DIRECTORY; nothing if nothing is to be stored.
+[[nodiscard]] std::optional<std::filesystem::path> state_file_of(bool enabled, const std::string& path,
+                                                                 const char* name);
+/// A freeze frame of the present time, without values of the vehicle or a radar.
+[[nodiscard]] FreezeFrame frame_now(const FaultMemory& memory);
 
 /// Identifies the operation cycle: the same number until the ECU boots again, or of each start.
 [[nodiscard]] std::uint64_t operation_cycle_id(OperationCycle kind);

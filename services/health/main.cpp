@@ -7,6 +7,7 @@
 #include "services/health/config.hpp"
 #include "services/health/core/supervision.hpp"
 #include "services/health/fault_store.hpp"
+#include "services/health/level_store.hpp"
 #include "services/health/outlet.hpp"
 
 using namespace boresight;
@@ -20,6 +21,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   health::Supervision supervision(vehicle, config.supervision, runtime::monotonic_now_ns());
   supervision.set_origin(configuration, runtime::software_version());
   health::FaultStore store(node, supervision.faults(), config.fault_store);
+  health::LevelStore levels(node, supervision, vehicle, config);
   supervision.restored();
   health::Outlet outlet(node, vehicle, config.dds, supervision.faults(), key);
   runtime::Publisher<HealthReport> reports(node);
@@ -51,6 +53,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
     const std::int64_t now_ns = runtime::monotonic_now_ns();
     supervision.judge(*current, now_ns, runtime::realtime_now_ns());
     store.keep(now_ns);
+    levels.keep(now_ns);
     outlet.serve(now_ns);
     const bool changed = health::verdicts_differ(*current, *sent);
     if (!changed && now_ns < next_ns) return;
@@ -65,6 +68,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
     outlet.write(*sent, changed, now_ns);
   });
   const int exit_code = node.spin();
+  levels.finish();
   outlet.end();
   store.finish();
   return exit_code;

@@ -165,6 +165,13 @@ void Accumulator::explain(std::uint32_t radar_id, std::string explanation,
 }
 
 void Accumulator::observe(const HealthReport& report) {
+  current_.overall = report.overall;
+  current_.pipeline = {.data_qualifier = report.pipeline.data_qualifier,
+                       .failed_events = report.pipeline.failed_events,
+                       .lost_scans = report.pipeline.lost_scans,
+                       .budget_hits = report.pipeline.budget_hits,
+                       .queueing_max_ms = report.pipeline.queueing_max_ms,
+                       .latency_p99_ms = report.pipeline.latency_p99_ms};
   current_.load_change = alignment_words::load_change_sentence(report.load_change);
   current_.speed_change = alignment_words::speed_change_sentence(report.speed_change);
   for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_sensors, kMaxRadars); ++i) {

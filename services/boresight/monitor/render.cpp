@@ -71,6 +71,11 @@ Ink ink_of(const RadarSnapshot& radar) {
   return Ink::kBad;
 }
 
+Ink ink_of(DataQualifier qualifier) {
+  if (qualifier == DataQualifier::kAvailable) return Ink::kGood;
+  return qualifier == DataQualifier::kAvailableReduced ? Ink::kWarning : Ink::kBad;
+}
+
 Ink ink_of(ServiceCondition condition) {
   if (condition == ServiceCondition::kAlive) return Ink::kGood;
   if (condition == ServiceCondition::kSilent) return Ink::kBad;
@@ -158,6 +163,26 @@ void put_radars(Page& page, const Snapshot& snapshot) {
                r.extended_qualifier == ExtendedQualifier::kNormal ? Ink::kDim : Ink::kWarning);
       page.line();
     }
+  }
+}
+
+/// The verdict on the system as a whole, and on the way of the scans with its figures.
+void put_health(Page& page, const Snapshot& snapshot) {
+  const PipelineSnapshot& p = snapshot.pipeline;
+  page.put("HEALTH   ", Ink::kDim);
+  page.put(std::string(name_of(snapshot.overall)), ink_of(snapshot.overall));
+  page.put("   pipeline ");
+  page.put(std::string(name_of(p.data_qualifier)), ink_of(p.data_qualifier));
+  const auto count = [&page](std::uint32_t number, const char* text) {
+    page.put(fmt::format("   {} {}", number, text), number > 0 ? Ink::kWarning : Ink::kPlain);
+  };
+  count(p.lost_scans, p.lost_scans == 1 ? "scan lost" : "scans lost");
+  count(p.budget_hits, "at the work budget");
+  page.put(fmt::format("   queueing max {:.1f} ms   latency p99 {:.1f} ms", p.queueing_max_ms, p.latency_p99_ms));
+  page.line();
+  for (const FailedEvent& event : failed_events_of(p)) {
+    page.put(fmt::format("         {} {}", event.code, event.meaning), Ink::kWarning);
+    page.line();
   }
 }
 
@@ -254,6 +279,7 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
   page.put(fmt::format("   {:02}:{:02}   ego {:5.1f} m/s  {:+5.1f} °/s", seconds / 60, seconds % 60,
                        snapshot.ego_speed_mps, snapshot.ego_yaw_rate_radps * kDegreesPerRadian));
   page.line();
+  put_health(page, snapshot);
   page.line();
   put_radars(page, snapshot);
   put_ego(page, snapshot);
@@ -266,7 +292,9 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
 }
 
 std::string render_line(const Snapshot& snapshot, double elapsed_s) {
-  std::string text = fmt::format("{:5.0f} s  {:4.1f} m/s ", elapsed_s, snapshot.ego_speed_mps);
+  std::string text = fmt::format("{:5.0f} s  {:4.1f} m/s  overall {}, pipeline {}", elapsed_s, snapshot.ego_speed_mps,
+                                 name_of(snapshot.overall), name_of(snapshot.pipeline.data_qualifier));
+  for (const FailedEvent& event : failed_events_of(snapshot.pipeline)) text += " " + event.code;
   for (const RadarSnapshot& r : snapshot.radars) {
     text += fmt::format(" | {} {:.0f}/s yaw {} {}", r.name, r.rate_hz, angle_text(r.details.yaw, is_estimated(r)),
                         verdict(r));

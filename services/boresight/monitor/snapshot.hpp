@@ -125,6 +125,23 @@ struct ServiceSnapshot {
   [[nodiscard]] std::uint64_t count(Fault fault) const { return faults[static_cast<std::size_t>(fault)]; }
 };
 
+/// The way of the scans from arrival to track list, by the health service.
+struct PipelineSnapshot {
+  DataQualifier data_qualifier = DataQualifier::kNotAvailable;
+  std::uint32_t failed_events = 0;  ///< PipelineEvent bits
+  std::uint32_t lost_scans = 0;     ///< between the stages, over the last supervision window as are the next three
+  std::uint32_t budget_hits = 0;    ///< scans that met a work budget
+  double queueing_max_ms = 0.0;     ///< longest time that a scan waited for a stage
+  double latency_p99_ms = 0.0;      ///< from arrival to track list
+};
+
+/// A test of the pipeline whose last known result is a failure.
+struct FailedEvent {
+  std::string code;  ///< trouble code
+  std::string_view meaning;
+};
+[[nodiscard]] std::vector<FailedEvent> failed_events_of(const PipelineSnapshot& pipeline);
+
 /// Time spent in each stage (from its input to its output), and last the total: reception to track list.
 inline constexpr std::size_t kNumberOfLatencies = kNumberOfStages + 1;
 inline constexpr std::array<std::string_view, kNumberOfLatencies> kLatencyNames = {"ingest", "corrector",
@@ -135,6 +152,8 @@ struct Snapshot {
   double ego_speed_mps = 0.0;
   double ego_yaw_rate_radps = 0.0;
   std::uint64_t track_lists = 0;
+  DataQualifier overall = DataQualifier::kNotAvailable;  ///< by the health service; without it nothing is available
+  PipelineSnapshot pipeline;
   std::string load_change, speed_change;  ///< the latest of the vehicle, as sentences; empty: none was reported
   std::vector<RadarSnapshot> radars;      ///< in the order of the vehicle file
   std::vector<TrackSnapshot> tracks;      ///< nearest first

@@ -124,6 +124,19 @@ json::Value object_of(const ServiceSnapshot& s) {
   return value;
 }
 
+json::Value object_of(const PipelineSnapshot& p) {
+  json::Value value;
+  value["data_qualifier"] = name_of(p.data_qualifier);
+  json::Value& codes = value["failed_events"] = json::Value::array();
+  for (const FailedEvent& event : failed_events_of(p)) codes.push_back(event.code);
+  value["failed_event_bits"] = p.failed_events;
+  value["lost_scans"] = p.lost_scans;
+  value["budget_hits"] = p.budget_hits;
+  value["queueing_max_ms"] = digits_of(p.queueing_max_ms);
+  value["latency_p99_ms"] = digits_of(p.latency_p99_ms);
+  return value;
+}
+
 json::Value object_of(const LatencyHistogram& histogram) {
   json::Value value;
   value["p50"] = std::round(histogram.percentile_us(0.5));
@@ -151,6 +164,8 @@ std::string to_json(const Snapshot& snapshot) {
   value["ego_speed_mps"] = digits_of(snapshot.ego_speed_mps);
   value["ego_yaw_rate_radps"] = digits_of(snapshot.ego_yaw_rate_radps);
   value["track_lists"] = snapshot.track_lists;
+  value["overall"] = name_of(snapshot.overall);
+  value["pipeline"] = object_of(snapshot.pipeline);
   value["load_change"] = snapshot.load_change;
   value["speed_change"] = snapshot.speed_change;
   value["radars"] = array_of(snapshot.radars);

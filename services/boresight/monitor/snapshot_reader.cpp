@@ -198,6 +198,17 @@ ServiceSnapshot service_at(const Fields& fields) {
   return s;
 }
 
+PipelineSnapshot pipeline_at(const Fields& fields) {
+  PipelineSnapshot p;
+  p.data_qualifier = fields.value("data_qualifier", DataQualifier::kNotAvailable);
+  fields.read("failed_event_bits", p.failed_events);
+  fields.read("lost_scans", p.lost_scans);
+  fields.read("budget_hits", p.budget_hits);
+  p.queueing_max_ms = fields.number("queueing_max_ms");
+  p.latency_p99_ms = fields.number("latency_p99_ms");
+  return p;
+}
+
 LatencyHistogram latency_at(const Fields& fields) {
   LatencyHistogram histogram;
   histogram.restore_max(fields.number("max"));
@@ -228,6 +239,8 @@ Snapshot snapshot_at(const Fields& fields) {
   snapshot.ego_speed_mps = fields.number("ego_speed_mps");
   snapshot.ego_yaw_rate_radps = fields.number("ego_yaw_rate_radps");
   fields.read("track_lists", snapshot.track_lists);
+  snapshot.overall = fields.value("overall", DataQualifier::kNotAvailable);
+  snapshot.pipeline = pipeline_at(fields.object("pipeline"));
   snapshot.load_change = fields.text("load_change");
   snapshot.speed_change = fields.text("speed_change");
   read_array(fields, "radars", snapshot.radars, radar_at);

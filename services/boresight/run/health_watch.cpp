@@ -66,6 +66,7 @@ void HealthWatch::observe(const AlignmentEstimate& estimate) {
 
 void HealthWatch::observe(const EgoMotion& motion) {
   vehicle_frame_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<float>::quiet_NaN();
+  for (health::SensorMonitor& sensor : sensors_) sensor.observe(motion);
 }
 
 void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t own_ns) {

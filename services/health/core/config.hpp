@@ -3,6 +3,7 @@
 
 #include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/function/delivery_monitor.hpp"
+#include "services/health/core/function/disturbance_monitor.hpp"
 #include "services/health/core/function/sight_monitor.hpp"
 
 namespace boresight::health {
@@ -32,6 +33,7 @@ struct Config {
   PipelineConfig pipeline = {};
   DeliveryConfig delivery = {};
   SightConfig sight = {};
+  DisturbanceConfig disturbance = {};
   FaultMemoryConfig faults = {};
 };
 

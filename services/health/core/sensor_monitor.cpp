@@ -50,6 +50,11 @@ SeenScan seen_in(const RadarScan& scan, double range_quantile) {
   return {.detections = static_cast<double>(count), .range_m = static_cast<double>(*nth)};
 }
 
+/// False for data of doubtful integrity. A gap before a scan says nothing against the scan.
+bool is_sound(const RadarScan& scan) {
+  return (scan.integrity & ~scan_integrity::kCounterGap) == 0;
+}
+
 /// An axis against tolerance and limit, about the sensor and about a vehicle axis (0 x, 1 y, 2 z).
 AngleJudge angle_judge(const RadarConfig& radar, const Config& config, double AlignmentTolerance::*angle,
                        Eigen::Index axis) {
@@ -82,6 +87,8 @@ SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std
       delivery_(config.delivery, 1.0 / radar.cycle_time_s, radar.deadline_s, radar.latency_s, config.window_s,
                 start_ns),
       sight_monitor_(config.sight),
+      unexplained_(radar, config.disturbance.explanation),
+      disturbance_(config.disturbance),
       messages_(config.window_s),
       rejected_(config.window_s),
       suspect_(config.window_s),
@@ -107,12 +114,39 @@ void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
   received_.add(now_ns);
   if ((scan.integrity & (kFrozen | kRepeated)) != 0) frozen_.add(now_ns);
   if ((scan.integrity & kContradictsEgo) != 0) contradicting_.add(now_ns);
-  const SeenScan seen = seen_in(scan, config_.sight.range_quantile);
-  sight_monitor_.observe(seen, speed_mps_, now_ns);
+  observe_content(scan, now_ns);
+}
+
+void SensorMonitor::observe_content(const RadarScan& scan, std::int64_t now_ns) {
+  SeenScan seen = seen_in(scan, config_.sight.range_quantile);
+  seen.is_sound = is_sound(scan);
+  sight_monitor_.observe(seen, motion_.speed_mps, now_ns);
+  // Data that are proven wrong are no disturbance.
+  const std::optional<ExplainedScan> explained = seen.is_sound ? unexplained_.explain(scan, motion_) : std::nullopt;
+  if (explained) {
+    disturbance_.observe(*explained, motion_.speed_mps, now_ns);
+  } else {
+    disturbance_.skip();
+  }
   constexpr double kSmoothing = 0.1;
   detections_per_scan_ = delivery_.scans() == 1
                              ? seen.detections
                              : detections_per_scan_ + kSmoothing * (seen.detections - detections_per_scan_);
+}
+
+void SensorMonitor::observe(const EgoMotion& motion) {
+  motion_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<double>::quiet_NaN();
+  motion_.is_signed = motion.has(ego_field::kReverse);
+  motion_.yaw_rate_radps = motion.has(ego_field::kYawRate) ? motion.yaw_rate_radps : 0.0;
+}
+
+RadarLevels SensorMonitor::levels() const {
+  return {.radar_id = radar_id_, .sight = sight_monitor_.levels(), .log_unexplained = disturbance_.level()};
+}
+
+void SensorMonitor::restore(const RadarLevels& levels) {
+  sight_monitor_.restore(levels.sight);
+  disturbance_.restore(levels.log_unexplained);
 }
 
 void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
@@ -283,6 +317,7 @@ void SensorMonitor::test(FaultMemory& faults, std::int64_t now_ns, const SensorH
   report(RadarEvent::kEgoContradiction, received > 0.0, exceeds(contradicting_));
   faults.report(event(RadarEvent::kBlind), sight_monitor_.blind(), now_ns, frame);
   faults.report(event(RadarEvent::kReducedSight), sight_monitor_.reduced(), now_ns, frame);
+  faults.report(event(RadarEvent::kDisturbed), disturbance_.disturbed(), now_ns, frame);
   report(RadarEvent::kWrongInput, has_estimate_, finding_ != AlignmentFinding::kNone);
   test_axis(faults, RadarEvent::kYawMisaligned, RadarEvent::kYawBeyondLimit, yaw_, now_ns, frame);
   test_axis(faults, RadarEvent::kPitchMisaligned, RadarEvent::kPitchBeyondLimit, pitch_, now_ns, frame);
@@ -328,7 +363,6 @@ void SensorMonitor::set_verdict(SensorHealth& health, const FaultMemory& faults)
 }
 
 SensorHealth SensorMonitor::judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle) {
-  speed_mps_ = vehicle.speed_mps;
   SensorHealth health = quantities(now_ns);
   set_consequences(health, vehicle.speed_mps);
   test(faults, now_ns, health, vehicle);

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "interfaces/messages/service_status.hpp"
@@ -13,6 +15,8 @@
 #include "services/health/core/consequence.hpp"
 #include "services/health/core/faults/fault_memory.hpp"
 #include "services/health/core/function/delivery_monitor.hpp"
+#include "services/health/core/function/disturbance_monitor.hpp"
+#include "services/health/core/function/radar_levels.hpp"
 #include "services/health/core/function/sight_monitor.hpp"
 #include "services/health/core/rate_window.hpp"
 
@@ -25,6 +29,7 @@ class SensorMonitor {
   SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns);
 
   void observe(const RadarScan& scan, std::int64_t now_ns);
+  void observe(const EgoMotion& motion);
   void observe(const AlignmentEstimate& estimate);
   /// The gateway's counts for this radar.
   void observe(const SourceStatistics& statistics, std::int64_t now_ns);
@@ -33,6 +38,9 @@ class SensorMonitor {
   [[nodiscard]] SensorHealth judge(FaultMemory& faults, std::int64_t now_ns, const FreezeFrame& vehicle);
   /// Continues with the verdicts of an earlier process.
   void restore(const FaultMemory& faults);
+  /// What this radar is used to deliver, to be kept over a restart.
+  [[nodiscard]] RadarLevels levels() const;
+  void restore(const RadarLevels& levels);
 
   [[nodiscard]] std::uint32_t radar_id() const { return radar_id_; }
   /// True if a scan arrived within the radar's deadline.
@@ -43,7 +51,9 @@ class SensorMonitor {
   Config config_;
   DeliveryMonitor delivery_;
   SightMonitor sight_monitor_;
-  double speed_mps_ = 0.0;  // of the vehicle; NaN if it is not known
+  UnexplainedDetections unexplained_;
+  DisturbanceMonitor disturbance_;
+  VehicleMotion motion_{.speed_mps = std::numeric_limits<double>::quiet_NaN(), .yaw_rate_radps = 0.0};
   std::uint64_t lost_scans_ = 0;
   std::uint64_t last_sequence_ = 0;
   double detections_per_scan_ = 0.0;
@@ -62,6 +72,7 @@ class SensorMonitor {
   Sight sight_;
   Eigen::Matrix3d mounting_ = Eigen::Matrix3d::Zero();  // by the latest estimate that counts; zero without one
   SightLoss sight_loss_;                                // of it, else of the last known misalignment
+  void observe_content(const RadarScan& scan, std::int64_t now_ns);
   void judge_axes(const AlignmentEstimate& estimate);
   [[nodiscard]] Event event(RadarEvent radar_event) const;
   [[nodiscard]] SensorHealth quantities(std::int64_t now_ns);

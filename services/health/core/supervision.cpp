@@ -93,6 +93,18 @@ void Supervision::restored() {
   for (SensorMonitor& sensor : sensors_) sensor.restore(faults_);
 }
 
+VehicleLevels Supervision::levels() const {
+  VehicleLevels levels;
+  for (const SensorMonitor& sensor : sensors_) levels.radars[levels.number_of_radars++] = sensor.levels();
+  return levels;
+}
+
+void Supervision::restore(const VehicleLevels& levels) {
+  for (std::size_t i = 0; i < levels.number_of_radars; ++i) {
+    if (SensorMonitor* const s = sensor(levels.radars[i].radar_id)) s->restore(levels.radars[i]);
+  }
+}
+
 SensorMonitor* Supervision::sensor(std::uint32_t radar_id) {
   const auto found = std::find_if(sensors_.begin(), sensors_.end(),
                                   [radar_id](const SensorMonitor& s) { return s.radar_id() == radar_id; });
@@ -108,6 +120,7 @@ void Supervision::observe(const RadarScan& scan, std::int64_t now_ns) {
 
 void Supervision::observe(const EgoMotion& motion) {
   vehicle_frame_.speed_mps = motion.has(ego_field::kSpeed) ? motion.speed_mps : std::numeric_limits<float>::quiet_NaN();
+  for (SensorMonitor& sensor : sensors_) sensor.observe(motion);
 }
 
 void Supervision::observe(const AlignmentEstimate& estimate) {

@@ -33,6 +33,9 @@ class Supervision {
   [[nodiscard]] FaultMemory& faults() { return faults_; }
   /// Continues with the verdicts that the fault memory was restored with. Call it before the first judgement.
   void restored();
+  /// What the radars are used to deliver, to be kept over a restart, and what an earlier process kept.
+  [[nodiscard]] VehicleLevels levels() const;
+  void restore(const VehicleLevels& levels);
 
   void observe(const RadarScan& scan, std::int64_t now_ns);
   void observe(const EgoMotion& motion);

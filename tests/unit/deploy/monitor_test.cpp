@@ -56,6 +56,15 @@ void see_misaligned_radar(Accumulator& accumulator) {
   report.sensors[1].conditions = source_condition::kPartlyBlocked | source_condition::kUnsynchronised;
   report.sensors[1].missed_scans = 12;
   report.sensors[1].suspect_scans = 3;
+  report.overall = DataQualifier::kAvailableReduced;
+  report.pipeline = {.data_qualifier = DataQualifier::kAvailableReduced,
+                     .reserved = {},
+                     .failed_events = 1U << static_cast<unsigned>(PipelineEvent::kLosing) |
+                                      1U << static_cast<unsigned>(PipelineEvent::kLate),
+                     .lost_scans = 7,
+                     .budget_hits = 2,
+                     .queueing_max_ms = 12.5F,
+                     .latency_p99_ms = 61.0F};
   report.number_of_services = 1;
   report.services[0].service = 4;
   report.services[0].condition = ServiceCondition::kRestarted;
@@ -233,6 +242,9 @@ TEST(SnapshotLines, AreReadBackWithEveryValueAlsoWhenTheLastIsCutOff) {
   EXPECT_EQ(snapshots[0].radars[1].conditions, written.radars[1].conditions);
   EXPECT_NEAR(snapshots[0].radars[1].details.pitch.value_rad, written.radars[1].details.pitch.value_rad, 1e-9);
   EXPECT_TRUE(std::isnan(snapshots[0].radars[1].details.pitch_seconds_to_95_percent));
+  EXPECT_EQ(snapshots[0].overall, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(snapshots[0].pipeline.failed_events, written.pipeline.failed_events);
+  EXPECT_EQ(snapshots[0].pipeline.queueing_max_ms, 12.5);
   EXPECT_EQ(snapshots[0].tracks[0].object_class, ObjectClass::kVan);
   EXPECT_EQ(snapshots[0].tracks[0].existence, 0.75);
   EXPECT_EQ(snapshots[0].tracks[0].mirror_probability, 0.125);
@@ -248,6 +260,13 @@ TEST(SnapshotLines, StateConditionsAnglesAndLabels) {
               ::testing::HasSubstr(
                   R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
                   R"("clutter":1,"ambiguity":0,"rejected":1},"classified_scans":1,"classified_without_tracks":1)"));
+}
+
+TEST(SnapshotLines, HoldTheVerdictOnThePipelineWithItsTroubleCodes) {
+  EXPECT_THAT(to_json(eventful_snapshot()),
+              ::testing::HasSubstr(R"("overall":"AVAILABLE_REDUCED","pipeline":{"data_qualifier":"AVAILABLE_REDUCED",)"
+                                   R"("failed_events":["U1B00-82","U1B00-33"],"failed_event_bits":9,"lost_scans":7,)"
+                                   R"("budget_hits":2,"queueing_max_ms":12.5,"latency_p99_ms":61.0})"));
 }
 
 TEST(SnapshotLines, NameOfARadarMayHoldAnyCharacter) {
@@ -314,6 +333,21 @@ TEST(Render, ShowsWhichRadarIsMisalignedWithItsUncertainty) {
   EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restart)"));
   EXPECT_THAT(screen, ::testing::Not(::testing::HasSubstr("\x1b"))) << "no colour unless asked for";
   EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.500 ± 0.040°"));
+}
+
+TEST(Render, ShowsTheVerdictOnThePipelineWithItsFiguresAndTroubleCodes) {
+  Accumulator accumulator(vehicle());
+  EXPECT_THAT(render_screen(accumulator.snapshot(0), {.width = 190}),
+              ::testing::HasSubstr("\nHEALTH   NOT_AVAILABLE   pipeline NOT_AVAILABLE   0 scans lost"))
+      << "nothing is available before the health service has reported";
+  see_misaligned_radar(accumulator);
+  const std::string screen = render_screen(accumulator.snapshot(0), {.width = 190});
+  EXPECT_THAT(screen, ::testing::HasSubstr(
+                          "\nHEALTH   AVAILABLE_REDUCED   pipeline AVAILABLE_REDUCED   7 scans lost   2 at the work "
+                          "budget   queueing max 12.5 ms   latency p99 61.0 ms\n         U1B00-82 scans are lost or "
+                          "dropped between the stages\n         U1B00-33 track lists come later"));
+  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0),
+              ::testing::HasSubstr("overall AVAILABLE_REDUCED, pipeline AVAILABLE_REDUCED U1B00-82 U1B00-33 | "));
 }
 
 TEST(Render, CutsLinesByCharactersNotBytes) {

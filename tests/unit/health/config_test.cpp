@@ -41,6 +41,24 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(s.sight.passing_share, expected.sight.passing_share);
   EXPECT_EQ(s.sight.blind_ratio, expected.sight.blind_ratio);
   EXPECT_EQ(s.sight.unusual_share, expected.sight.unusual_share);
+  EXPECT_EQ(s.sight.least_detections, expected.sight.least_detections);
+  EXPECT_EQ(s.sight.least_range_m, expected.sight.least_range_m);
+  const DisturbanceConfig &d = s.disturbance, &usual = expected.disturbance;
+  EXPECT_EQ(d.explanation.stationary_tolerance_mps, usual.explanation.stationary_tolerance_mps);
+  EXPECT_EQ(d.explanation.stationary_tolerance_ratio, usual.explanation.stationary_tolerance_ratio);
+  EXPECT_EQ(d.explanation.neighbour_distance_m, usual.explanation.neighbour_distance_m);
+  EXPECT_EQ(d.explanation.neighbour_range_rate_mps, usual.explanation.neighbour_range_rate_mps);
+  EXPECT_EQ(d.explanation.fastest_reverse_mps, usual.explanation.fastest_reverse_mps);
+  EXPECT_EQ(d.explanation.longest_interval_s, usual.explanation.longest_interval_s);
+  EXPECT_EQ(d.least_speed_mps, usual.least_speed_mps);
+  EXPECT_EQ(d.smoothing_s, usual.smoothing_s);
+  EXPECT_EQ(d.learning_s, usual.learning_s);
+  EXPECT_EQ(d.memory_s, usual.memory_s);
+  EXPECT_EQ(d.least_log_std, usual.least_log_std);
+  EXPECT_EQ(d.sigma, usual.sigma);
+  EXPECT_EQ(d.least_share, usual.least_share);
+  EXPECT_EQ(d.passing_share, usual.passing_share);
+  EXPECT_EQ(d.unusual_share, usual.unusual_share);
   EXPECT_EQ(s.max_rejected_ratio, expected.max_rejected_ratio);
   EXPECT_EQ(s.max_suspect_ratio, expected.max_suspect_ratio);
   EXPECT_EQ(s.restart_memory_s, expected.restart_memory_s);
@@ -75,6 +93,9 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(read.dds.tracks, diagnostics.tracks);
   EXPECT_EQ(read.dds.tracks_period_s, diagnostics.tracks_period_s);
   EXPECT_THAT(read.dds.interfaces, testing::ElementsAre("127.0.0.1")) << "no other machine can listen";
+  EXPECT_TRUE(read.level_store.enabled);
+  EXPECT_EQ(read.level_store.path, "");
+  EXPECT_EQ(read.level_store.write_period_s, LevelStoreConfig().write_period_s);
   EXPECT_EQ(read.dds.command_key_file, "") << "nobody may command unless the integrator wants it";
 }
 
@@ -96,6 +117,9 @@ TEST(HealthConfig, NonsenseIsRefusedWithWhatIsAllowed) {
   EXPECT_THAT(problems_of("[debounce]\nno_dat = {set_s = 1.0}"), testing::HasSubstr("no_data"));
   EXPECT_THAT(problems_of("[debounce]\nno_data = {set_s = 11.0}"), testing::HasSubstr("10"));
   EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.4"), testing::HasSubstr("0.1 … 0.35")) << "too late a verdict";
+  EXPECT_THAT(problems_of("[sight]\nleast_detections = 0.0"), testing::HasSubstr("0.5 … 20"));
+  EXPECT_THAT(problems_of("[disturbance]\nleast_share = 1.0"), testing::HasSubstr("0.05 … 0.9"));
+  EXPECT_THAT(problems_of("[learnt_levels]\nwrite_period_s = 0.1"), testing::HasSubstr("5 … 3600")) << "wear";
   EXPECT_THAT(problems_of("[fault_memory]\nageing_cycles = 0"), testing::HasSubstr("1 … 255"));
   EXPECT_THAT(problems_of("[fault_memory]\noperation_cycle = \"drive\""), testing::HasSubstr("start"));
   EXPECT_THAT(problems_of("[misalignment]\nconfidence = 1.0"), testing::HasSubstr("0.9 … 0.9999"));

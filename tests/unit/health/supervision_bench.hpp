@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +57,23 @@ class SupervisionTest : public testing::Test {
     estimate_[1].header.source_id = 2;
   }
 
+  /// The vehicle moves from now on.
+  void drive(float speed_mps) {
+    EgoMotion motion{};
+    motion.fields = ego_field::kSpeed | ego_field::kYawRate;
+    motion.speed_mps = speed_mps_ = speed_mps;
+    supervision_.observe(motion);
+  }
+  /// A radar's scan: reflectors ahead, and random detections of interference.
+  void fill(std::uint32_t id) {
+    std::uniform_real_distribution<float> range_m(1.0F, 150.0F), range_rate_mps(-80.0F, 80.0F);
+    scan_->number_of_valid_detections = detections_[id] + interference_[id];
+    for (std::uint32_t i = 0; i < scan_->number_of_valid_detections; ++i) {
+      const bool is_random = i >= detections_[id];
+      scan_->range_m[i] = is_random ? range_m(random_) : 20.0F + static_cast<float>(i);
+      scan_->range_rate_mps[i] = is_random ? range_rate_mps(random_) : -speed_mps_;
+    }
+  }
   ServiceStatus& status(Service service) { return status_[static_cast<std::size_t>(service)]; }
   const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
   const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
@@ -70,7 +88,8 @@ class SupervisionTest : public testing::Test {
         if (!scan_is_due || silent_radar_ == id) continue;
         scan_->header.source_id = id;
         scan_->header.source_sequence = ++sequence_[id];
-        scan_->number_of_valid_detections = 40;
+        scan_->header.measurement_time_ns = now_;
+        fill(id);
         supervision_.observe(*scan_, now_);
         ++status_[0].sources[id - 1].messages;
         for (std::size_t s = 0; s < 5; ++s) {
@@ -101,6 +120,10 @@ class SupervisionTest : public testing::Test {
   std::array<bool, 6> idle_{};
   std::array<std::uint64_t, 3> sequence_{};
   std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  std::array<std::uint32_t, 3> detections_{0, 40, 40};
+  std::array<std::uint32_t, 3> interference_{};
+  float speed_mps_ = 0.0F;
+  std::mt19937 random_{1};
   std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
   std::unique_ptr<HealthReport> report_ = std::make_unique<HealthReport>();
   std::uint32_t silent_radar_ = 0;

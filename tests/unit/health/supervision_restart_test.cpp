@@ -161,6 +161,32 @@ TEST_F(RestartTest, AWrongInputWithdrawsTheVerdictOnTheMountingAlsoInTheMemory) 
   expect(1, kAvailable, kNormal);
 }
 
+TEST_F(RestartTest, ARadarThatIsBlindAfterTheRestartIsFoundByTheKeptLevel) {
+  drive(20.0F);
+  run(20.0);
+  const VehicleLevels levels = supervision_.levels();
+  ASSERT_EQ(levels.number_of_radars, 2u);
+  restart();
+  supervision_.restore(levels);
+  drive(20.0F);
+  detections_[2] = 2;
+  run(5.0);
+  expect(1, kAvailable, kNormal);
+  expect(2, kNotAvailable, kBlocked);
+  restart();
+  drive(20.0F);
+  run(5.0);
+  EXPECT_EQ(supervision_.levels().radars[1].sight.log_count.learnt_s, 0.0) << "and no level is learnt of it";
+}
+
+TEST_F(RestartTest, ARadarThatIsBlindFromTheFirstStartIsFoundAfterTheLearningTime) {
+  drive(20.0F);
+  detections_[2] = 1;
+  run(14.0);
+  expect(1, kAvailable, kNormal);
+  expect(2, kNotAvailable, kBlocked);
+}
+
 TEST_F(RestartTest, TheFreezeFrameHoldsWhatWasKnown) {
   supervision_.set_origin(0x1234, "9.8.7");
   EgoMotion motion{};

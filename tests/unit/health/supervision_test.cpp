@@ -219,6 +219,29 @@ TEST_F(SupervisionTest, WorstEffectIsReportedAndThenTheReasonThatAWorkshopMustRe
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
+TEST_F(SupervisionTest, InterferenceIsAnExternalDisturbanceAsLongAsItLasts) {
+  drive(20.0F);
+  run(30.0);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+  interference_[2] = 40;
+  run(5.0);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kExternalDisturbance);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
+  interference_[2] = 0;
+  run(5.0);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, FrozenScansAreNoDisturbanceAndTeachNoLevel) {
+  drive(20.0F);
+  scan_->integrity = scan_integrity::kFrozen;
+  run(30.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInvalidData);
+  EXPECT_EQ(supervision_.levels().radars[0].sight.log_count.learnt_s, 0.0);
+  EXPECT_EQ(supervision_.levels().radars[0].log_unexplained.learnt_s, 0.0);
+}
+
 TEST_F(SupervisionTest, ScansLostBeforeTheGatewayAreReported) {
   status_[0].sources[0].lost = 7;
   status_[0].sources[0].e2e_lost = 8;

@@ -82,6 +82,7 @@ inline std::vector<std::string> snapshots() {
   monitor::Snapshot snapshot;
   snapshot.radars.resize(2);
   snapshot.radars[0].name = kName;
+  snapshot.pipeline.failed_events = 1;
   monitor::AlignmentDetails& known = snapshot.radars[1].details;
   known.yaw_seconds_to_95_percent = known.pitch_seconds_to_95_percent = known.yaw_drift_radpmin = 1.0;
   known.residual_rmse_mps = known.nees = 1.0;

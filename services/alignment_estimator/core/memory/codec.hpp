@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <span>
 
-#include "services/alignment_estimator/core/memory/identity.hpp"
 #include "services/alignment_estimator/core/memory/memory.hpp"
+#include "services/common/vehicle/identity.hpp"
 
 namespace boresight::alignment {
 

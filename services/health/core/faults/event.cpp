@@ -113,6 +113,9 @@ constexpr std::array<EventType, kNumberOfEventKinds> kTypes = {{
      "the stored fault memory could not be used", "look for the file with the suffix .rejected; check the medium"},
     {EventKind::kFaultMemoryUnwritable, "fault_memory_unwritable", Subject::kVehicle, kFaultMemoryCode, 0x43,
      kAvailable, kNormal, "the fault memory cannot be written", "free space on the medium; check its rights"},
+    {EventKind::kLevelsLost, "levels_lost", Subject::kVehicle, kFaultMemoryCode, 0x46, kAvailable, kNormal,
+     "the stored levels of what the radars are used to see could not be used",
+     "none: they are learnt again; look for the file with the suffix .rejected"},
 }};
 
 constexpr bool types_are_in_order() {

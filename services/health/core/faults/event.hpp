@@ -31,8 +31,9 @@ enum class EventKind : std::uint8_t {
   kDiagnosticsMute,
   kFaultMemoryLost,
   kFaultMemoryUnwritable,
+  kLevelsLost,
 };
-inline constexpr std::size_t kNumberOfEventKinds = kNumberOfRadarEvents + 15;
+inline constexpr std::size_t kNumberOfEventKinds = kNumberOfRadarEvents + 16;
 
 [[nodiscard]] constexpr EventKind kind_of(RadarEvent event) {
   return static_cast<EventKind>(event);

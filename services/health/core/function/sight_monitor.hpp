@@ -2,12 +2,10 @@
 // detections away, first the far and weak ones.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "services/health/core/faults/status.hpp"
+#include "services/health/core/function/learnt_level.hpp"
 
 namespace boresight::health {
 
@@ -24,6 +22,9 @@ struct SightConfig {
   double passing_share = 0.7;   ///< of the deviation at which a test fails, above which it passes (choice: hysteresis)
   double blind_ratio = 0.11;    ///< share of the usual detections or range, below: blind (choice)
   double unusual_share = 0.05;  ///< weight in learning of what is not usual, so that no error lasts (choice)
+  double least_detections =
+      2.0;                      ///< fewer over `learning_s` of motion: blind, before a level is known (choice: strays)
+  double least_range_m = 10.0;  ///< that the detections reach, likewise (measured: 80 m in RadarScenes)
 };
 
 /// A scan as the monitor sees it.
@@ -31,30 +32,12 @@ struct SeenScan {
   double detections = 0.0;
   double range_m =
       0.0;  ///< that the share `range_quantile` of the detections does not exceed; not used without detections
+  bool is_sound = true;  ///< false: data of doubtful integrity are judged, but teach no level
 };
 
-/// Level of one quantity: the mean and the variance of its smoothed logarithm, learnt with a fading memory.
-class LearntLevel {
- public:
-  LearntLevel() = default;
-  explicit LearntLevel(double least_std) : variance_(least_std * least_std), least_std_(least_std) {}
-
-  /// `value` over the last `dt_s` of motion.
-  void learn(double value, double dt_s, double memory_s) {
-    learnt_s_ = std::min(learnt_s_ + dt_s, memory_s);
-    const double error = value - mean_;
-    mean_ += dt_s / learnt_s_ * error;
-    variance_ += dt_s / learnt_s_ * (error * error - variance_);
-  }
-  [[nodiscard]] double deviation(double value) const { return value - mean_; }
-  [[nodiscard]] double std() const { return std::max(least_std_, std::sqrt(variance_)); }
-  [[nodiscard]] double learnt_s() const { return learnt_s_; }
-
- private:
-  double mean_ = 0.0;
-  double variance_ = 0.0;
-  double least_std_ = 0.0;
-  double learnt_s_ = 0.0;
+/// What a radar is used to see.
+struct SightLevels {
+  StoredLevel log_count, log_range;
 };
 
 class SightMonitor {
@@ -65,28 +48,29 @@ class SightMonitor {
   /// One scan at `time_ns`. Without a known speed, or below the least one, nothing is judged or learnt.
   void observe(const SeenScan& seen, double speed_mps, std::int64_t time_ns);
 
-  [[nodiscard]] TestResult blind() const { return below(config_.blind_ratio); }
+  [[nodiscard]] TestResult blind() const;
   [[nodiscard]] TestResult reduced() const { return below(1.0); }
   /// Whether the level was learnt long enough.
   [[nodiscard]] bool is_known() const { return count_.level.learnt_s() >= config_.learning_s; }
 
- private:
-  struct Quantity {
-    LearntLevel level;
-    double smoothed = 0.0;
-  };
+  [[nodiscard]] SightLevels levels() const { return {count_.level.stored(), range_.level.stored()}; }
+  /// Continues with the levels of an earlier process.
+  void restore(const SightLevels& levels);
 
+ private:
   /// Whether the detections or the range are below that share of the usual, and further than any scene explains.
   [[nodiscard]] TestResult below(double ratio) const;
-  [[nodiscard]] TestResult below(const Quantity& quantity, double ratio) const;
-  void smooth(Quantity& quantity, double value, double share) const;
+  [[nodiscard]] TestResult below(const LevelledQuantity& quantity, double ratio) const;
+  /// Less than radars see at all. A level is not needed for that, and none is learnt of it.
+  [[nodiscard]] bool sees_nothing() const;
+  /// Whether the radar is known to have so few detections that their absence is a scene.
+  [[nodiscard]] bool has_few() const;
 
-  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
   SightConfig config_;
-  Quantity count_;
-  Quantity range_;
-  std::int64_t last_ns_ = kNever;  // of the last scan in motion
-  double moved_s_ = 0.0;           // without interruption
+  LevelledQuantity count_;  // logarithm of 1 + detections
+  LevelledQuantity range_;  // logarithm of the range in metres
+  ScanTime motion_;
+  double saw_nothing_s_ = 0.0;  // motion since there was sight
   bool is_moving_ = false;
 };
 

@@ -1,8 +1,8 @@
 // A vehicle, and a memory that an estimator may have learnt on it.
 #pragma once
 
-#include "services/alignment_estimator/core/memory/identity.hpp"
 #include "services/alignment_estimator/core/memory/memory.hpp"
+#include "services/common/vehicle/identity.hpp"
 
 namespace boresight::alignment {
 

@@ -19,7 +19,8 @@ class SightMonitorTest : public testing::Test {
     for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i, now_ns_ += 50'000'000) {
       scene_ += -0.02 * scene_ + 0.06 * unit(random_);  // standard deviation 0.3, correlated over 2.5 s
       const double count = std::floor(detections * std::exp(scene_ + 0.2 * unit(random_)) + 0.5);
-      monitor_.observe({.detections = count, .range_m = range_m * std::exp(0.5 * scene_)}, speed_mps, now_ns_);
+      monitor_.observe({.detections = count, .range_m = range_m * std::exp(0.5 * scene_), .is_sound = is_sound_},
+                       speed_mps, now_ns_);
       failures_ += monitor_.reduced() == TestResult::kFailed ? 1 : 0;
     }
   }
@@ -35,6 +36,7 @@ class SightMonitorTest : public testing::Test {
   double scene_ = 0.0;
   std::int64_t now_ns_ = 1'000'000'000;
   int failures_ = 0;
+  bool is_sound_ = true;
 };
 
 TEST_F(SightMonitorTest, SaysNothingBeforeTheLevelIsKnown) {
@@ -81,6 +83,45 @@ TEST_F(SightMonitorTest, ASlowVehicleIsNotJudgedAndTheVerdictIsTheCallersToKeep)
   EXPECT_EQ(monitor_.blind(), TestResult::kNone) << "the first second of motion says nothing";
   run(2.0, kDetections, kRange_m);
   EXPECT_EQ(monitor_.blind(), TestResult::kPassed);
+}
+
+TEST_F(SightMonitorTest, EmptyListsAndNearOnesFromTheFirstStartAreBlindAfterTheLearningTime) {
+  for (const auto& [detections, range_m] :
+       {std::pair{0.0, 0.0}, std::pair{1.0, kRange_m}, std::pair{kDetections, 6.0}}) {
+    monitor_ = SightMonitor();
+    scene_ = 0.0;
+    EXPECT_LT(seconds_until_blind(detections, range_m), 13.0) << detections << " detections within " << range_m << " m";
+    EXPECT_FALSE(monitor_.is_known()) << "no level is learnt of what a blind radar sees";
+    run(2.0, kDetections, kRange_m);
+    EXPECT_NE(monitor_.blind(), TestResult::kFailed);
+    run(12.0, kDetections, kRange_m);
+    EXPECT_EQ(monitor_.blind(), TestResult::kPassed);
+  }
+}
+
+TEST_F(SightMonitorTest, ARadarThatIsBlindAfterARestartIsFoundByTheKeptLevel) {
+  run(60.0, kDetections, kRange_m);
+  const SightLevels levels = monitor_.levels();
+  monitor_ = SightMonitor();
+  monitor_.restore(levels);
+  EXPECT_LT(seconds_until_blind(2.0, kRange_m), 2.0);
+  monitor_ = SightMonitor();
+  monitor_.restore(levels);
+  run(2.0, kDetections, kRange_m);
+  EXPECT_EQ(monitor_.blind(), TestResult::kPassed);
+}
+
+TEST_F(SightMonitorTest, ScansOfDoubtfulIntegrityTeachNoLevel) {
+  is_sound_ = false;
+  run(60.0, kDetections, kRange_m);
+  EXPECT_FALSE(monitor_.is_known());
+}
+
+TEST_F(SightMonitorTest, AnEmptyRoadIsNoBlindnessOfARadarThatIsKnownToHaveFew) {
+  run(60.0, 5.0, 60.0);
+  scene_ = 0.0;
+  run(60.0, 0.0, 0.0);
+  EXPECT_NE(monitor_.blind(), TestResult::kFailed);
 }
 
 TEST_F(SightMonitorTest, ARadarOfFewDetectionsIsMeasuredByItsOwnLevel) {

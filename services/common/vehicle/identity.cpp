@@ -1,11 +1,11 @@
-#include "services/alignment_estimator/core/memory/identity.hpp"
+#include "services/common/vehicle/identity.hpp"
 
 #include <algorithm>
 #include <string_view>
 
 #include "services/common/state/fingerprint.hpp"
 
-namespace boresight::alignment {
+namespace boresight {
 
 namespace {
 
@@ -38,4 +38,4 @@ Identity identity_of(const VehicleConfig& vehicle) {
   return identity;
 }
 
-}  // namespace boresight::alignment
+}  // namespace boresight

@@ -1,4 +1,4 @@
-// Identity of a memory: the vehicle and the radars that an alignment is valid for.
+// Identity of what is kept over a restart: the vehicle and the radars that it is valid for.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include "interfaces/messages/header.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
-namespace boresight::alignment {
+namespace boresight {
 
 /// Fingerprints (CRC-64) of the vehicle's name and of each radar's nominal mounting and profile.
 struct Identity {
@@ -31,4 +31,4 @@ struct Identity {
 
 [[nodiscard]] Identity identity_of(const VehicleConfig& vehicle);
 
-}  // namespace boresight::alignment
+}  // namespace boresight
