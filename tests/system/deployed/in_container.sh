@@ -23,6 +23,8 @@ all_active() {
   local service
   for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
 }
+# broker: RouDi itself, which the unit's main process runs as its child.
+broker() { pgrep -P "$(pid_of roudi)"; }
 # is_new SERVICE OLD_PID: true if the service runs as another process.
 is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
 # monitor SECONDS: the topics as JSON, read by a member of the group.
@@ -71,6 +73,63 @@ mapped() { grep " /dev/shm/boresight-$2\$" "/proc/$(pid_of "$1")/maps" | awk '{p
 check "a service maps its own segment for writing" mapped tracker tracker rw-s
 check "and the others' read-only" mapped tracker ghost_filter r--s
 
+# in_domain USER COMMAND…: as a process of the domain, with this user's groups.
+in_domain() {
+  local user=$1
+  shift
+  nsenter -m -t "$(pid_of roudi)" runuser -u "boresight-$user" -- "$@"
+}
+# opens USER FILE ACCESS: whether the user can open the file for reading ("<") or for reading and writing ("<>").
+opens() { in_domain "$1" sh -c "exec 3$3'$2'" 2>/dev/null; }
+# only_writer SEGMENT: every user may read the segment; only its own service may open it for writing.
+only_writer() {
+  local user may
+  for user in "${services[@]}" monitor replay; do
+    opens "$user" "/dev/shm/boresight-$1" '<' || { echo "$user cannot read $1"; return 1; }
+    may=no
+    opens "$user" "/dev/shm/boresight-$1" '<>' && may=yes
+    [ $may = "$([ "$user" = "$1" ] && echo yes || echo no)" ] || { echo "$user may write to $1: $may"; return 1; }
+  done
+}
+for service in "${services[@]}"; do
+  check "only $service may open its segment for writing" only_writer "$service"
+done
+stranger_is_shut_out() { ! setpriv --reuid nobody --regid nogroup --clear-groups sh -c 'exec 3</dev/shm/iceoryx_mgmt' 2>/dev/null; }
+check "a user of another group may not open the management memory" stranger_is_shut_out
+has_no_capability() { ! grep -q '^CapEff:.*[1-9a-f]' "/proc/$(broker)/status"; }
+check "RouDi has no capability" has_no_capability
+
+# closed STATE: nobody but the service of this name can look into its folder of persisted state.
+closed() {
+  local user
+  for user in "${services[@]}" monitor replay; do
+    [ "$user" = "$1" ] && continue
+    runuser -u "boresight-$user" -- ls "/var/lib/boresight/$1/" >/dev/null 2>&1 && { echo "$user looks into $1"; return 1; }
+  done
+  runuser -u "boresight-$1" -- ls "/var/lib/boresight/$1/" >/dev/null
+}
+check "only the estimator reaches its alignment memory" closed alignment_estimator
+check "only health reaches the fault memory" closed health
+
+# A compromised service that publishes in the gateway's name. RouDi lets it; the readers refuse its messages.
+# refusals SERVICE: messages that this service refused.
+refusals() {
+  local count
+  count=$(monitor 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"wrong version\":[0-9]*" | grep -o '[0-9]*$')
+  echo "${count:-0}"
+}
+check "the readers refused no message so far" [ "$(refusals detection_corrector)" = 0 ]
+scan_is_too_large() { ! in_domain tracker deployed-impostor > /out/impostor_tracker.txt 2>&1; }
+check "radar scans of the tracker end it: its memory has no room for them" scan_is_too_large
+monitor_is_refused() { ! in_domain monitor deployed-impostor small > /out/impostor_monitor.txt 2>&1; }
+check "the monitor may publish nothing" monitor_is_refused
+check "vehicle motions of the tracker enter the queues" in_domain tracker deployed-impostor small
+check "and the corrector refuses them" [ "$(refusals detection_corrector)" -ge 20 ]
+refused=$(refusals detection_corrector)
+check "radar scans of the ghost filter enter the queues" in_domain ghost_filter deployed-impostor
+check "and the corrector refuses them" [ "$(refusals detection_corrector)" -ge $((refused + 20)) ]
+check "the true gateway goes on" heartbeats_flow
+
 tracker=$(pid_of tracker)
 gateway=$(pid_of ingest_gateway)
 kill -KILL "$tracker"
@@ -92,8 +151,6 @@ for service in "${services[@]}"; do
 done
 check "and the new domain works" within 10 heartbeats_flow
 
-# broker: RouDi itself, which the unit's main process runs as its child.
-broker() { pgrep -P "$(pid_of roudi)"; }
 for fault in KILL STOP; do
   roudi=$(pid_of roudi)
   tracker=$(pid_of tracker)
@@ -134,7 +191,11 @@ systemctl daemon-reload
 systemctl restart boresight-health.service
 check "with its own program it becomes active" within 10 systemctl is-active -q boresight-health.service
 
+# A monitor that is still registered: RouDi may not end it.
+in_domain monitor boresight monitor --config /etc/boresight --vehicle demo --json --duration 60 > /dev/null 2>&1 &
+sleep 1
 systemctl stop boresight.target
+pkill -u boresight-monitor
 check "stopping the target leaves no process and no shared memory" within 10 nothing_left
 
 echo $failed > /out/verdict
