@@ -2,7 +2,10 @@
 // heartbeats in the gateway's name, and vehicle motions (`small`) or radar scans as well. It runs for three seconds.
 #include <cstdint>
 #include <cstdio>
+#include <string>
 #include <string_view>
+
+#include <unistd.h>
 
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/node.hpp"
@@ -15,7 +18,8 @@ constexpr std::int64_t kDuration_ns = 3'000'000'000;
 
 int run(bool only_small) {
   // With the gateway's own name, RouDi would take the gateway for dead and delete its ports.
-  runtime::Node node(catalogue::Service::kIngestGateway, "-impostor");
+  // A name for each user: iceoryx keeps a lock file of each name in /tmp.
+  runtime::Node node(catalogue::Service::kIngestGateway, "-impostor" + std::to_string(getuid()));
   runtime::Publisher<RadarScan> scans(node);
   runtime::Publisher<EgoMotion> motions(node);
   unsigned published = 0;

@@ -119,10 +119,15 @@ refusals() {
   echo "${count:-0}"
 }
 check "the readers refused no message so far" [ "$(refusals detection_corrector)" = 0 ]
-scan_is_too_large() { ! in_domain tracker deployed-impostor > /out/impostor_tracker.txt 2>&1; }
-check "radar scans of the tracker end it: its memory has no room for them" scan_is_too_large
-monitor_is_refused() { ! in_domain monitor deployed-impostor small > /out/impostor_monitor.txt 2>&1; }
-check "the monitor may publish nothing" monitor_is_refused
+# fails_with ERROR USER ARGUMENT…: the impostor ends with this error of the middleware.
+fails_with() {
+  local error=$1 user=$2
+  shift 2
+  in_domain "$user" deployed-impostor "$@" > "/out/impostor_$user.txt" 2>&1
+  [ $? -eq 70 ] && grep -q "$error" "/out/impostor_$user.txt"
+}
+check "the monitor may publish nothing" fails_with NO_WRITABLE_SHM_SEGMENT monitor small
+check "radar scans of the tracker end it: its memory has no room for them" fails_with CHUNK_IS_TOO_LARGE tracker
 check "vehicle motions of the tracker enter the queues" in_domain tracker deployed-impostor small
 check "and the corrector refuses them" [ "$(refusals detection_corrector)" -ge 20 ]
 refused=$(refusals detection_corrector)
@@ -195,8 +200,8 @@ check "with its own program it becomes active" within 10 systemctl is-active -q 
 in_domain monitor boresight monitor --config /etc/boresight --vehicle demo --json --duration 60 > /dev/null 2>&1 &
 sleep 1
 systemctl stop boresight.target
-pkill -u boresight-monitor
 check "stopping the target leaves no process and no shared memory" within 10 nothing_left
+check "though a monitor was registered" pkill -u boresight-monitor
 
 echo $failed > /out/verdict
 exit $failed
