@@ -150,7 +150,7 @@ roudi=$(pid_of roudi)
 declare -A before
 for service in "${services[@]}"; do before[$service]=$(pid_of "$service"); done
 kill -KILL "$roudi"
-check "a killed RouDi comes back" within 5 is_new roudi "$roudi"
+check "a killed RouDi comes back" within 10 is_new roudi "$roudi"
 for service in "${services[@]}"; do
   check "boresight-$service is started anew with it" within 10 is_new "$service" "${before[$service]}"
 done
@@ -160,7 +160,7 @@ for fault in KILL STOP; do
   roudi=$(pid_of roudi)
   tracker=$(pid_of tracker)
   kill -$fault "$(broker)"
-  check "RouDi behind its wrapper, SIG$fault: a new one is started" within 5 is_new roudi "$roudi"
+  check "RouDi behind its wrapper, SIG$fault: a new one is started" within 10 is_new roudi "$roudi"
   check "with the domain" within 10 is_new tracker "$tracker"
   check "which works" within 10 heartbeats_flow
 done
