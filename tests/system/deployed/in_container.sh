@@ -141,6 +141,14 @@ kill -KILL "$tracker"
 check "a killed service comes back" within 5 is_new tracker "$tracker"
 check "alone" [ "$(pid_of ingest_gateway)" = "$gateway" ]
 check "and is heard again" within 5 heartbeats_flow
+# alive SERVICE: the monitor hears its heartbeats.
+alive() { monitor 1 | tail -n 1 | grep -q "\"name\":\"$1\",\"condition\":\"\(alive\|degraded\|restarted\)\""; }
+for service in "${services[@]}"; do
+  old=$(pid_of "$service")
+  kill -KILL "$old"
+  check "$service, killed, comes back" within 10 is_new "$service" "$old"
+  check "and is heard again by users of other groups" within 10 alive "$service"
+done
 
 tracker=$(pid_of tracker)
 kill -STOP "$tracker"
