@@ -1,8 +1,10 @@
-// boresight-roudi PROGRAM [ARGUMENT…]: runs RouDi and is to a service manager what RouDi is not: a service that reports
-// READY, strokes the watchdog as long as RouDi makes progress, and ends RouDi when it hangs. README.md beside this
-// file.
+// boresight-roudi [--members GROUP] PROGRAM [ARGUMENT…]: runs RouDi and is to a service manager what RouDi is not: a
+// service that reports READY, strokes the watchdog as long as RouDi makes progress, and ends RouDi when it hangs.
+// README.md beside this file.
 #include <array>
 #include <exception>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -13,6 +15,7 @@
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
+#include "deploy/broker/admission/admission.hpp"
 #include "deploy/broker/broker_process.hpp"
 #include "deploy/broker/judgement/broker_progress.hpp"
 #include "deploy/broker/judgement/thread_activity.hpp"
@@ -25,8 +28,8 @@ namespace boresight::broker {
 namespace {
 
 constexpr std::string_view kReadyLine = "RouDi is ready for clients";
-constexpr int kUsageCode = 2;  // as every program of the product
-constexpr int kHungCode = 1;   // as every failure of a service at run time
+constexpr int kUsageCode = 2;    // as every program of the product
+constexpr int kFailureCode = 1;  // as every failure of a service at run time; also a RouDi that hangs
 constexpr int kSignalCodeBase = 128;
 // RouDi gives its clients a second to end (-k 1). A RouDi that needs longer than that hangs.
 constexpr std::int64_t kStopLimit_ns = 1'500'000'000;
@@ -65,7 +68,9 @@ using supervisor::now_ns;
 
 class Keeper {
  public:
-  explicit Keeper(char* const* arguments) : signals_(open_signals()), roudi_(arguments) {}
+  /// Members of the group `members` may register; without one, it is RouDi's own group.
+  Keeper(char* const* arguments, std::optional<gid_t> members)
+      : members_(members), signals_(open_signals()), roudi_(arguments) {}
 
   /// Returns the exit code when RouDi has ended.
   int run() {
@@ -73,7 +78,7 @@ class Keeper {
       pass_output_on();
       if (stop_is_asked_for(signals_)) begin_stop();
       if (stop_at_ns_ != 0 && now_ns() > stop_at_ns_) roudi_.send(SIGKILL);
-      if (is_ready_ && stop_at_ns_ == 0 && !makes_progress()) return kHungCode;
+      if (is_ready_ && stop_at_ns_ == 0 && !makes_progress()) return kFailureCode;
       wait();
     }
     pass_output_on();
@@ -100,6 +105,7 @@ class Keeper {
     if (is_ready_) return;
     output_ += text;
     if (output_.find(kReadyLine) == std::string::npos) return;
+    if (members_) admit(supervisor::Places(), *members_);
     is_ready_ = true;
     notify_ready(output_);
   }
@@ -129,6 +135,7 @@ class Keeper {
     return true;
   }
 
+  std::optional<gid_t> members_;
   int signals_;
   BrokerProcess roudi_;
   BrokerProgress progress_;
@@ -145,15 +152,25 @@ class Keeper {
 
 int main(int argc, char** argv) {
   using namespace boresight::broker;
-  if (argc < 2) {
-    report("usage: boresight-roudi PROGRAM [ARGUMENT…], for example: boresight-roudi iox-roudi -m off -k 1");
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  const bool has_members = first == "--members";
+  const int program = has_members ? 3 : 1;
+  if (argc <= program || (first.starts_with('-') && !has_members)) {
+    report(
+        "usage: boresight-roudi [--members GROUP] PROGRAM [ARGUMENT…], for example: boresight-roudi iox-roudi -m off "
+        "-k 1");
     return kUsageCode;
   }
   try {
     signal(SIGPIPE, SIG_IGN);
-    return Keeper(argv + 1).run();
+    std::optional<gid_t> members;
+    if (has_members) members = group_number(argv[2]);
+    return Keeper(argv + program, members).run();
+  } catch (const std::invalid_argument& error) {
+    report(error.what());
+    return kUsageCode;
   } catch (const std::exception& error) {
     report(error.what());
-    return kHungCode;
+    return kFailureCode;
   }
 }

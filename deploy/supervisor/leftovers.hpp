@@ -4,11 +4,15 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sys/types.h>
 
 namespace boresight::supervisor {
+
+/// RouDi's shared memory for queues, reference counters and ports; a fixed name of iceoryx.
+inline constexpr std::string_view kManagementSegment = "iceoryx_mgmt";
 
 /// Folders of iceoryx's files; different only in tests.
 struct Places {

@@ -13,7 +13,6 @@ namespace boresight::supervisor {
 
 namespace {
 
-constexpr std::string_view kManagementSegment = "iceoryx_mgmt";
 // Logs grow, and people edit files, much more slowly than this.
 constexpr std::int64_t kHousekeepingPeriod_ns = 500'000'000;
 // A supervisor that did not read messages for longer than this was stopped or got no processor. Its services could not

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 
@@ -75,6 +77,12 @@ void wait_for_roudi() {
   }
 }
 
+/// The segments of shared memory that iceoryx mapped into this process.
+WriterSegments mapped_segments() {
+  std::ifstream maps("/proc/self/maps");
+  return WriterSegments(std::string(std::istreambuf_iterator<char>(maps), {}));
+}
+
 /// Lowers the priority of services outside the data path. A scan wakes the corrector and all other readers at the same
 /// time; on few cores the scan would wait for the other readers. Needs no privilege. If a unit's system call filter
 /// forbids it, the unit sets `Nice=`.
@@ -94,6 +102,7 @@ Node::Node(catalogue::Service self, std::string_view name_suffix) : impl_(std::m
   wait_for_roudi();
   const std::string name = "boresight-" + std::string(catalogue::name_of(self)) + std::string(name_suffix);
   iox::runtime::PoshRuntime::initRuntime(iox::RuntimeName_t(iox::cxx::TruncateToCapacity, name.c_str(), name.size()));
+  impl_->segments = mapped_segments();
   impl_->status.incarnation_ns = monotonic_now_ns();
   impl_->status.pid = getpid();
   impl_->status.state = ServiceState::kStarting;
@@ -232,11 +241,21 @@ void Node::set_degraded(bool degraded) {
   impl_->degraded = degraded;
 }
 
-/// The next message with the right version, whose loss or arrival is counted; nullptr if none waits.
+/// False for a message that another process than the topic's writer wrote, or that has another layout version.
+bool Node::Impl::is_acceptable(const Input& input, const MessageHeader& message) {
+  if (!segments.accept(input.topic, message)) {
+    std::snprintf(status.last_fault.data(), status.last_fault.size(), "%.*s refused: not in the memory of its writer",
+                  static_cast<int>(input.topic.name.size()), input.topic.name.data());
+    return false;
+  }
+  return message.version == input.version;
+}
+
+/// The next acceptable message, whose loss or arrival is counted; nullptr if none waits.
 const MessageHeader* Node::Impl::take_from_queue(Input& input) {
   for (auto result = input.port.take(); !result.has_error(); result = input.port.take()) {
     const auto& header = *static_cast<const MessageHeader*>(result.value());
-    if (header.version != input.version) {
+    if (!is_acceptable(input, header)) {
       ++status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
       ++input.refused;
       input.port.release(&header);

@@ -29,8 +29,8 @@ class Node {
 
   /// Calls `handler(const T&)` for every message of T, in the order of arrival. Waiting messages of inputs declared
   /// earlier are handled before those declared later, so declare side inputs first. The message is read in place and
-  /// valid only during the call. Messages with another layout version are counted and skipped; sequence gaps are
-  /// counted as Fault::kInputLost.
+  /// valid only during the call. Messages with another layout version, or outside the memory of the topic's writer, are
+  /// counted and skipped; sequence gaps are counted as Fault::kInputLost.
   template <typename T, typename Handler>
   void on(Handler handler) {
     add_input(catalogue::topic(catalogue::kTopicOf<T>), T::kVersion,

@@ -20,6 +20,7 @@
 #include "services/common/runtime/ports.hpp"
 #include "services/common/runtime/progress_watch.hpp"
 #include "services/common/runtime/wait_timer.hpp"
+#include "services/common/runtime/writer_segments.hpp"
 
 namespace boresight::runtime {
 
@@ -60,7 +61,7 @@ struct Input {
   std::optional<NewestPerSource> newest;  // for on_newest()
   std::function<void(const void*, std::uint64_t)> handler;
   std::uint64_t handled = 0;
-  std::uint64_t refused = 0;  // of another layout version
+  std::uint64_t refused = 0;  // of another layout version, or not in the memory of the topic's writer
   WatchedInput watched;
   WatchedOutput answers;  // for on_newest(): the outputs that follow from its messages
 };
@@ -85,6 +86,7 @@ struct Node::Impl {
   bool take_one(Input& input);
   bool take_newest(Input& input);
   const MessageHeader* take_from_queue(Input& input);
+  [[nodiscard]] bool is_acceptable(const Input& input, const MessageHeader& message);
   void drop(Input& input, const MessageHeader& message);
   void handle(Input& input, const MessageHeader& message, std::uint64_t dropped);
   void run_timers();
@@ -102,6 +104,7 @@ struct Node::Impl {
   [[nodiscard]] WatchedOutput& output(catalogue::TopicId topic) { return outputs[static_cast<std::size_t>(topic)]; }
 
   catalogue::Service self;
+  WriterSegments segments;                      // as mapped on registering
   std::optional<iox::popo::WaitSet<>> waitset;  // with inputs that wake the service only, as is the timer
   std::optional<WaitTimer> wait_timer;
   std::vector<std::unique_ptr<Input>> inputs;  // in order of priority

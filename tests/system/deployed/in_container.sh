@@ -23,6 +23,8 @@ all_active() {
   local service
   for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
 }
+# broker: RouDi itself, which the unit's main process runs as its child.
+broker() { pgrep -P "$(pid_of roudi)"; }
 # is_new SERVICE OLD_PID: true if the service runs as another process.
 is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
 # monitor SECONDS: the topics as JSON, read by a member of the group.
@@ -71,12 +73,82 @@ mapped() { grep " /dev/shm/boresight-$2\$" "/proc/$(pid_of "$1")/maps" | awk '{p
 check "a service maps its own segment for writing" mapped tracker tracker rw-s
 check "and the others' read-only" mapped tracker ghost_filter r--s
 
+# in_domain USER COMMAND…: as a process of the domain, with this user's groups.
+in_domain() {
+  local user=$1
+  shift
+  nsenter -m -t "$(pid_of roudi)" runuser -u "boresight-$user" -- "$@"
+}
+# opens USER FILE ACCESS: whether the user can open the file for reading ("<") or for reading and writing ("<>").
+opens() { in_domain "$1" sh -c "exec 3$3'$2'" 2>/dev/null; }
+# only_writer SEGMENT: every user may read the segment; only its own service may open it for writing.
+only_writer() {
+  local user may
+  for user in "${services[@]}" monitor replay; do
+    opens "$user" "/dev/shm/boresight-$1" '<' || { echo "$user cannot read $1"; return 1; }
+    may=no
+    opens "$user" "/dev/shm/boresight-$1" '<>' && may=yes
+    [ $may = "$([ "$user" = "$1" ] && echo yes || echo no)" ] || { echo "$user may write to $1: $may"; return 1; }
+  done
+}
+for service in "${services[@]}"; do
+  check "only $service may open its segment for writing" only_writer "$service"
+done
+stranger_is_shut_out() { ! setpriv --reuid nobody --regid nogroup --clear-groups sh -c 'exec 3</dev/shm/iceoryx_mgmt' 2>/dev/null; }
+check "a user of another group may not open the management memory" stranger_is_shut_out
+has_no_capability() { ! grep -q '^CapEff:.*[1-9a-f]' "/proc/$(broker)/status"; }
+check "RouDi has no capability" has_no_capability
+
+# closed STATE: nobody but the service of this name can look into its folder of persisted state.
+closed() {
+  local user
+  for user in "${services[@]}" monitor replay; do
+    [ "$user" = "$1" ] && continue
+    runuser -u "boresight-$user" -- ls "/var/lib/boresight/$1/" >/dev/null 2>&1 && { echo "$user looks into $1"; return 1; }
+  done
+  runuser -u "boresight-$1" -- ls "/var/lib/boresight/$1/" >/dev/null
+}
+check "only the estimator reaches its alignment memory" closed alignment_estimator
+check "only health reaches the fault memory" closed health
+
+# A compromised service that publishes in the gateway's name. RouDi lets it; the readers refuse its messages.
+# refusals SERVICE: messages that this service refused.
+refusals() {
+  local count
+  count=$(monitor 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"wrong version\":[0-9]*" | grep -o '[0-9]*$')
+  echo "${count:-0}"
+}
+check "the readers refused no message so far" [ "$(refusals detection_corrector)" = 0 ]
+# fails_with ERROR USER ARGUMENT…: the impostor ends with this error of the middleware.
+fails_with() {
+  local error=$1 user=$2
+  shift 2
+  in_domain "$user" deployed-impostor "$@" > "/out/impostor_$user.txt" 2>&1
+  [ $? -eq 70 ] && grep -q "$error" "/out/impostor_$user.txt"
+}
+check "the monitor may publish nothing" fails_with NO_WRITABLE_SHM_SEGMENT monitor small
+check "radar scans of the tracker end it: its memory has no room for them" fails_with CHUNK_IS_TOO_LARGE tracker
+check "vehicle motions of the tracker enter the queues" in_domain tracker deployed-impostor small
+check "and the corrector refuses them" [ "$(refusals detection_corrector)" -ge 20 ]
+refused=$(refusals detection_corrector)
+check "radar scans of the ghost filter enter the queues" in_domain ghost_filter deployed-impostor
+check "and the corrector refuses them" [ "$(refusals detection_corrector)" -ge $((refused + 20)) ]
+check "the true gateway goes on" heartbeats_flow
+
 tracker=$(pid_of tracker)
 gateway=$(pid_of ingest_gateway)
 kill -KILL "$tracker"
 check "a killed service comes back" within 5 is_new tracker "$tracker"
 check "alone" [ "$(pid_of ingest_gateway)" = "$gateway" ]
 check "and is heard again" within 5 heartbeats_flow
+# alive SERVICE: the monitor hears its heartbeats.
+alive() { monitor 1 | tail -n 1 | grep -q "\"name\":\"$1\",\"condition\":\"\(alive\|degraded\|restarted\)\""; }
+for service in "${services[@]}"; do
+  old=$(pid_of "$service")
+  kill -KILL "$old"
+  check "$service, killed, comes back" within 10 is_new "$service" "$old"
+  check "and is heard again by users of other groups" within 10 alive "$service"
+done
 
 tracker=$(pid_of tracker)
 kill -STOP "$tracker"
@@ -86,19 +158,17 @@ roudi=$(pid_of roudi)
 declare -A before
 for service in "${services[@]}"; do before[$service]=$(pid_of "$service"); done
 kill -KILL "$roudi"
-check "a killed RouDi comes back" within 5 is_new roudi "$roudi"
+check "a killed RouDi comes back" within 10 is_new roudi "$roudi"
 for service in "${services[@]}"; do
   check "boresight-$service is started anew with it" within 10 is_new "$service" "${before[$service]}"
 done
 check "and the new domain works" within 10 heartbeats_flow
 
-# broker: RouDi itself, which the unit's main process runs as its child.
-broker() { pgrep -P "$(pid_of roudi)"; }
 for fault in KILL STOP; do
   roudi=$(pid_of roudi)
   tracker=$(pid_of tracker)
   kill -$fault "$(broker)"
-  check "RouDi behind its wrapper, SIG$fault: a new one is started" within 5 is_new roudi "$roudi"
+  check "RouDi behind its wrapper, SIG$fault: a new one is started" within 10 is_new roudi "$roudi"
   check "with the domain" within 10 is_new tracker "$tracker"
   check "which works" within 10 heartbeats_flow
 done
@@ -134,8 +204,12 @@ systemctl daemon-reload
 systemctl restart boresight-health.service
 check "with its own program it becomes active" within 10 systemctl is-active -q boresight-health.service
 
+# A monitor that is still registered: RouDi may not end it.
+in_domain monitor boresight monitor --config /etc/boresight --vehicle demo --json --duration 60 > /dev/null 2>&1 &
+sleep 1
 systemctl stop boresight.target
 check "stopping the target leaves no process and no shared memory" within 10 nothing_left
+check "though a monitor was registered" pkill -u boresight-monitor
 
 echo $failed > /out/verdict
 exit $failed

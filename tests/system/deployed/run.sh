@@ -41,6 +41,7 @@ BORESIGHT_INPUT=replay
 BORESIGHT_REPLAY_ARGS=$recordings
 EOF
 install -m 755 "$here/in_container.sh" "$root/usr/local/bin/deployed-test"
+install -m 755 "$build/bin/deployed_impostor" "$root/usr/local/bin/deployed-impostor"
 cat > "$root/etc/systemd/system/deployed-test.service" <<'EOF'
 # Not named boresight-…, as the restrictions of these units would apply.
 [Unit]

@@ -41,4 +41,9 @@ while read -r group; do
   grep -qx "User=$group" "$units/$group.service" || { echo "$group.service does not run as $group"; failed=1; }
   grep -q "$group.service" "$units/boresight.target" || { echo "boresight.target does not want $group"; failed=1; }
 done < <(sed -n 's/^writer = "\(.*\)"$/\1/p' "$source_dir/deploy/roudi/roudi-deployed.toml")
+# iceoryx lets RouDi's group write to every segment: nobody else may be in it, and RouDi runs in it.
+grep -E '^(m|u) ' "$units/sysusers.conf" | grep -vE '^u boresight-roudi ' | grep -E '[ :]boresight-roudi( |$)' |
+  grep -v '^m boresight-roudi  *boresight$' && { echo "sysusers.conf: somebody else is in RouDi's group"; failed=1; }
+grep -q '^u boresight-roudi .*:boresight-roudi ' "$units/sysusers.conf" || { echo "RouDi has no group of its own"; failed=1; }
+grep -qx 'Group=boresight-roudi' "$units"/boresight-roudi.service.d/*.conf || { echo "RouDi does not run in its group"; failed=1; }
 exit $failed

@@ -1,5 +1,6 @@
 #include "deploy/roudi/pools.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -84,6 +85,56 @@ TEST(RoudiPools, EveryWriterHasItsOwnSegmentWithRoomForItsTopics) {
         EXPECT_NE(pool_for(segment, topic.payload_bytes), nullptr) << topic.name;
       }
     }
+  }
+}
+
+TEST(RoudiPools, EachSegmentHoldsWhatItsWriterAndAllReadersNeedAndHardlyMore) {
+  for (const Segment& segment : segment_per_writer()) {
+    std::size_t wanted = 0;
+    for (const auto& topic : catalogue::kTopics) {
+      for (std::size_t i = 0; i < catalogue::kNumberOfServices; ++i) {
+        if (segment.writer_group != "boresight-" + std::string(catalogue::kServiceNames[i])) continue;
+        if (!topic.writers.contains(static_cast<catalogue::Service>(i))) continue;
+        // Queues and hands of all readers; 8 loans, the history and the last chunk of the one writer.
+        const std::size_t readers = topic.readers.size() - 1 + catalogue::kMaxMonitors;
+        wanted += readers * (catalogue::queue_capacity(topic) + 1) + topic.newest_first.size() * kMaxRadars;
+        wanted += topic.history + 9;
+      }
+    }
+    std::size_t there = 0;
+    for (const Pool& pool : segment.pools) there += pool.count;
+    EXPECT_GE(there, wanted) << segment.writer_group;
+    EXPECT_LT(there, wanted + 8 * segment.pools.size()) << segment.writer_group;
+  }
+}
+
+TEST(RoudiPools, SegmentsOfWritersHaveTheChunksOfTheSingleSegmentAndMoreOnlyForHeartbeats) {
+  const Segment all = single_segment().at(0);
+  const std::size_t status = chunk_bytes_for(sizeof(ServiceStatus));
+  for (const Pool& pool : all.pools) {
+    std::size_t count = 0;
+    for (const Segment& segment : segment_per_writer()) {
+      for (const Pool& of_writer : segment.pools)
+        count += of_writer.chunk_bytes == pool.chunk_bytes ? of_writer.count : 0;
+    }
+    // A reader's queue of heartbeats may be full of those of one service, whichever it is.
+    if (pool.chunk_bytes == status) {
+      EXPECT_GT(count, pool.count);
+    } else {
+      EXPECT_EQ(count, pool.count) << pool.chunk_bytes;
+    }
+  }
+}
+
+TEST(RoudiPools, NoServiceMayWriteToTwoSegmentsOrToAllByReading) {
+  // iceoryx ends a process that may write to two segments.
+  const auto segments = segment_per_writer();
+  for (const Segment& segment : segments) {
+    EXPECT_NE(segment.writer_group, segment.reader_group);
+    EXPECT_NE(segment.writer_group, "boresight-roudi") << "the group of RouDi may write to all segments";
+    EXPECT_EQ(std::count_if(segments.begin(), segments.end(),
+                            [&](const Segment& other) { return other.writer_group == segment.writer_group; }),
+              1);
   }
 }
 
