@@ -13,7 +13,7 @@ namespace boresight::calibrate {
 std::string seed_state_file(const std::filesystem::path& file, const VehicleConfig& vehicle,
                             const alignment::RotationSeed& seed) {
   using Kind = alignment::LoadedMemory::Kind;
-  const alignment::Identity identity = alignment::identity_of(vehicle);
+  const Identity identity = identity_of(vehicle);
   const auto loaded = std::make_unique<alignment::LoadedMemory>(alignment::load_memory(file, identity));
   std::string note;
   switch (loaded->kind) {

@@ -132,7 +132,7 @@ class IgnitionCycles : public testing::Test {
   }
   [[nodiscard]] static std::string log() { return text_of(harness::log_of_alone(kService)); }
 
-  [[nodiscard]] LoadedMemory kept() const { return alignment::load_memory(file_, alignment::identity_of(vehicle_)); }
+  [[nodiscard]] LoadedMemory kept() const { return alignment::load_memory(file_, identity_of(vehicle_)); }
   /// Seconds of drive in the stored memory, for the whole vehicle; 0 without a memory.
   [[nodiscard]] double kept_drive_s() const {
     if (!fs::exists(file_)) return 0.0;
@@ -202,7 +202,7 @@ class IgnitionCycles : public testing::Test {
       for (std::size_t axis = 0; axis < 3; ++axis) memory.radars[i].rotation_variance(axis, axis) = 1e-8;
     }
     alignment::MemoryBytes bytes;
-    const std::size_t length = alignment::encode_memory(memory, alignment::identity_of(of), bytes);
+    const std::size_t length = alignment::encode_memory(memory, identity_of(of), bytes);
     EXPECT_GT(length, 0u);
     return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
   }

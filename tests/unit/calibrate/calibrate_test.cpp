@@ -160,7 +160,7 @@ TEST_F(Calibrate, the_command_calibrates_from_a_recording) {
   Outcome outcome = run(recording + tilts + of_radar + " --state " + state);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("the run is good"));
-  const alignment::LoadedMemory loaded = alignment::load_memory(state, alignment::identity_of(vehicle));
+  const alignment::LoadedMemory loaded = alignment::load_memory(state, identity_of(vehicle));
   ASSERT_EQ(loaded.kind, alignment::LoadedMemory::Kind::kTaken) << loaded.reason;
   EXPECT_NEAR(loaded.memory.radars[1].rotation_vehicle_rad[2] * kDegreesPerRadian, 1.1, 0.1);
   EXPECT_NEAR(loaded.memory.radars[1].rotation_vehicle_rad[0] * kDegreesPerRadian, 0.8 * std::sqrt(0.5), 0.25);
@@ -266,7 +266,7 @@ TEST_F(Calibrate, a_plates_result_gets_into_the_estimators_memory) {
   const std::string csv = folder_.write("run.csv", testing::plate_table(misaligned())), state = folder_.path("state");
   const Outcome outcome = run("plate --table " + csv + " --state " + state + " --radar 2 --vehicle " + kVehicle);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  const alignment::LoadedMemory loaded = alignment::load_memory(state, alignment::identity_of(vehicle));
+  const alignment::LoadedMemory loaded = alignment::load_memory(state, identity_of(vehicle));
   ASSERT_EQ(loaded.kind, alignment::LoadedMemory::Kind::kTaken) << loaded.reason;
   ASSERT_EQ(loaded.memory.number_of_radars, 4u);
   EXPECT_EQ(loaded.memory.radars[1].id, 2u);
@@ -279,7 +279,7 @@ TEST_F(Calibrate, a_plates_result_gets_into_the_estimators_memory) {
 
   // A second radar's leaves the first one's as it was.
   ASSERT_EQ(run("plate --table " + csv + " --state " + state + " --radar 1 --vehicle " + kVehicle).exit_code, 0);
-  const alignment::LoadedMemory both = alignment::load_memory(state, alignment::identity_of(vehicle));
+  const alignment::LoadedMemory both = alignment::load_memory(state, identity_of(vehicle));
   EXPECT_EQ(both.memory.radars[1].rotation_vehicle_rad, turn);
   EXPECT_NEAR(both.memory.radars[0].rotation_vehicle_rad[2] * kDegreesPerRadian, 1.1, 0.1);
 }
@@ -292,7 +292,7 @@ TEST_F(Calibrate, a_damaged_memory_is_kept_as_rejected_and_begun_anew) {
   seed.covariance = 1e-6 * Eigen::Matrix3d::Identity();
   EXPECT_THAT(seed_state_file(state, vehicle, seed), HasSubstr("kept as .rejected"));
   EXPECT_EQ(folder_.read("state.rejected"), "rubbish");
-  EXPECT_EQ(alignment::load_memory(state, alignment::identity_of(vehicle)).kind, alignment::LoadedMemory::Kind::kTaken);
+  EXPECT_EQ(alignment::load_memory(state, identity_of(vehicle)).kind, alignment::LoadedMemory::Kind::kTaken);
   seed.radar_id = 9;
   EXPECT_THROW(static_cast<void>(seed_state_file(state, vehicle, seed)), std::runtime_error);
   EXPECT_THROW(static_cast<void>(seed_state_file("/no/such/folder/state", vehicle, seed)), std::runtime_error);
@@ -324,7 +324,7 @@ TEST_F(Calibrate, the_command_finds_a_corner_radars_error_from_reflectors) {
   EXPECT_THAT(outcome.output, HasSubstr("pitch -0.60 ± "));
   EXPECT_THAT(outcome.output, HasSubstr("published line (along the driving direction)"));
   EXPECT_THAT(folder_.read("r.json"), HasSubstr("\"seed\":{\"radar\":1"));
-  const alignment::LoadedMemory loaded = alignment::load_memory(folder_.path("state"), alignment::identity_of(vehicle));
+  const alignment::LoadedMemory loaded = alignment::load_memory(folder_.path("state"), identity_of(vehicle));
   ASSERT_EQ(loaded.kind, alignment::LoadedMemory::Kind::kTaken);
   EXPECT_NEAR(loaded.memory.radars[0].rotation_vehicle_rad[2] * kDegreesPerRadian, 1.3, 0.02);
 }
