@@ -5,11 +5,17 @@
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/health/dds/security.hpp"
 
 namespace boresight::health {
 
 namespace {
 constexpr std::int64_t kRetryPeriod_ns = 5'000'000'000;
+
+std::int64_t now_s() {
+  return runtime::realtime_now_ns() / 1'000'000'000;
+}
+
 }  // namespace
 
 dds::CommandKey command_key_of(const dds::Config& config) {
@@ -35,7 +41,9 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
   if (!channel_) return;
   const bool is_taken = channel_->reports.write(report, runtime::realtime_now_ns());
   if (!is_taken) node_.fault(Fault::kLink, "DDS: the middleware rejected a sample");
-  report_mute(!is_taken, now_ns);
+  const bool expired = has_expired();
+  if (expired) node_.fault(Fault::kLink, "DDS security: a file has expired; new readers refuse this participant");
+  report_mute(!is_taken || expired, now_ns);
 }
 
 void Outlet::serve(std::int64_t now_ns) {
@@ -45,10 +53,16 @@ void Outlet::serve(std::int64_t now_ns) {
   }
 }
 
+bool Outlet::has_expired() const {
+  return now_s() > valid_until_s_;
+}
+
 void Outlet::open(std::int64_t now_ns) {
   try {
     channel_.emplace(config_, vehicle_, faults_, key_);
-    runtime::log::info("diagnostics are sent on DDS domain {}", config_.domain);
+    valid_until_s_ = dds::check_security(config_.security, config_.domain, now_s()).valid_until_s;
+    runtime::log::info("diagnostics are sent on DDS domain {}{}", config_.domain,
+                       config_.security.enabled ? ", secured" : "");
   } catch (const std::exception& error) {
     node_.fault(Fault::kLink, error.what());
     report_mute(true, now_ns);

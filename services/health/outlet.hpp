@@ -44,6 +44,8 @@ class Outlet {
   };
 
   void open(std::int64_t now_ns);
+  /// Whether new readers refuse this participant, because a certificate or its permissions have expired.
+  [[nodiscard]] bool has_expired() const;
   void report_mute(bool is_mute, std::int64_t now_ns);
 
   runtime::Node& node_;
@@ -52,6 +54,7 @@ class Outlet {
   FaultMemory& faults_;
   dds::CommandKey key_;
   std::optional<Channel> channel_;
+  std::int64_t valid_until_s_ = INT64_MAX;  // since the epoch
   std::int64_t next_ns_ = 0;
   std::int64_t retry_ns_ = 0;
 };

@@ -27,6 +27,7 @@ namespace {
 
 struct DiagnosticsOptions {
   dds::Config dds;
+  std::string security;  ///< folder; empty: an open domain
   bool array = false;
   bool all = false;
   std::string json;  ///< file, "-" for standard output; empty: text
@@ -168,6 +169,7 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
       ->add_option("--interface", options->dds.interfaces,
                    "IPv4 address of a network interface to use; repeatable; all interfaces if not given")
       ->type_name("ADDRESS");
+  add_security_option(*command, options->security);
   command->add_flag(
       "--array", options->array,
       "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");
@@ -181,7 +183,10 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
   on_call(*command, exit_code,
           {"diagnostics --all --count 10", "as many lines as wanted were received",
            "nothing was received, or fewer lines than --count"},
-          [options, command] { return run_diagnostics(*options, *command); });
+          [options, command] {
+            if (!options->security.empty()) options->dds.security = dds::secured_by(options->security);
+            return run_diagnostics(*options, *command);
+          });
 }
 
 }  // namespace boresight

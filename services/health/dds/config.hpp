@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "services/health/dds/security_config.hpp"
+
 namespace boresight::dds {
 
 struct Config {
@@ -14,6 +16,7 @@ struct Config {
   double period_s = 1.0;
   /// File with the secret of those who may command; "": nobody may.
   std::string command_key_file;
+  SecurityConfig security = {};
 };
 
 inline constexpr const char* kSensorHealthTopic = "boresight/sensor_health";

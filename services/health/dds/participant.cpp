@@ -11,6 +11,8 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
+#include "services/health/dds/security.hpp"
+
 namespace boresight::dds {
 
 namespace fast = eprosima::fastdds::dds;
@@ -43,6 +45,7 @@ Participant::Participant(const Config& config, const std::string& name) {
   udp->interfaceWhiteList = config.interfaces;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
+  secure(qos, config.security, config.domain);
   auto* const factory = fast::DomainParticipantFactory::get_instance();
   participant_ =
       made(factory->create_participant(config.domain, qos), "a participant of domain " + std::to_string(config.domain));
