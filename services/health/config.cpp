@@ -72,7 +72,7 @@ void read_security(config::Reader& dds, dds::SecurityConfig& c) {
   c.permissions_ca = table.text("permissions_ca", c.permissions_ca);
   c.governance = table.text("governance", c.governance);
   c.permissions = table.text("permissions", c.permissions);
-  if (c.enabled && !c.directory.empty() && c.directory.front() != '/') {
+  if (!c.directory.empty() && c.directory.front() != '/') {
     table.reject("directory", "must be an absolute path: a service has no folder of its own");
   }
 }

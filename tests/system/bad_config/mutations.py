@@ -229,7 +229,8 @@ add_values("health",
            ("interfaces", '["10.0.0.1", 3]', "dds.interfaces"), ("interfaces", '["10.0.0.1", "127.0.0.1"]', None),
            ("period_s", "1e9", "dds.period_s"), ("enabled", '"yes"', "fault_memory.enabled"), ("enabled", "false", None),
            ("ageing_cycles", "0", "fault_memory.ageing_cycles"), ("operation_cycle", '"drive"', "fault_memory.operation_cycle"),
-           ("start_grace_s", "0", "supervision.start_grace_s"))
+           ("start_grace_s", "0", "supervision.start_grace_s"),
+           ("directory", '"keys"', "dds.security.directory"), ("directory", '"/absent"', None), ("governance", "5", "dds.security.governance"))
 add_values("tracker",
            ("probability", "nan", "detection.probability"), ("probability", "0", "detection.probability"),
            ("confirmed_existence", "0.03", "report.confirmed_existence"),
