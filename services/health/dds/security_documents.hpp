@@ -13,7 +13,7 @@ namespace boresight::dds {
 
 /// What a permissions document grants one participant.
 struct Grant {
-  std::string problem;  ///< why there is no grant; empty if there is
+  std::string problem;            ///< why there is no grant; empty if there is
   std::int64_t not_before_s = 0;  ///< since the epoch
   std::int64_t not_after_s = 0;
 };

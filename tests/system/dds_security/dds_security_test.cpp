@@ -179,15 +179,16 @@ TEST_F(DdsSecurity, AReaderWhoDeceivesItsOwnMiddlewareIsNotBelieved) {
   fs::remove_all(insider);
   fs::copy(folder, insider);
   std::ofstream(insider / "permissions_ca.pem", std::ios::app) << text_of(others / "permissions_ca.pem");
-  const std::string signer = " -signer " + (others / "permissions_ca.pem").string() + " -inkey " +
-                             (others / "permissions_ca.key").string();
+  const std::string signer =
+      " -signer " + (others / "permissions_ca.pem").string() + " -inkey " + (others / "permissions_ca.key").string();
   const std::string governance = (others / "governance.p7s").string();
-  ASSERT_EQ(exit_code_of("openssl smime -verify -text -in " + governance + " -CAfile " +
-                         (others / "permissions_ca.pem").string() +
-                         " -out /tmp/governance.xml && sed -i s/write_access_control.true/write_access_control\\>false/ "
-                         "/tmp/governance.xml && openssl smime -sign -text -in /tmp/governance.xml -out " +
-                         (insider / "governance.p7s").string() + signer),
-            0)
+  ASSERT_EQ(
+      exit_code_of("openssl smime -verify -text -in " + governance + " -CAfile " +
+                   (others / "permissions_ca.pem").string() +
+                   " -out /tmp/governance.xml && sed -i s/write_access_control.true/write_access_control\\>false/ "
+                   "/tmp/governance.xml && openssl smime -sign -text -in /tmp/governance.xml -out " +
+                   (insider / "governance.p7s").string() + signer),
+      0)
       << text_of("/tmp/output.txt");
   Forger forger(kDomain, is_secured() ? insider.string() : std::string());
   start();

@@ -89,8 +89,8 @@ TEST_F(DdsSecurityFiles, EachThatIsMissingIsNamedWithItsKey) {
         std::pair{"private_key", "private_key.pem"}, std::pair{"permissions_ca", "permissions_ca.pem"},
         std::pair{"governance", "governance.p7s"}, std::pair{"permissions", "permissions.p7s"}}) {
     fs::rename(folder_ / file, root_ / "aside");
-    EXPECT_EQ(problem(), "dds.security." + std::string(key) + ": " + (folder_ / file).string() +
-                             ": No such file or directory");
+    EXPECT_EQ(problem(),
+              "dds.security." + std::string(key) + ": " + (folder_ / file).string() + ": No such file or directory");
     std::ofstream(folder_ / file) << "nonsense";
     EXPECT_THAT(problem(), HasSubstr("dds.security." + std::string(key) + ": ")) << "nonsense";
     fs::remove(folder_ / file);
@@ -128,9 +128,11 @@ TEST_F(DdsSecurityFiles, DocumentsThatWereChangedOrSignedByAParticipantAreRefuse
   EXPECT_THAT(problem(), HasSubstr("governance.p7s: is not signed by CN=permissions authority"));
   std::ofstream(folder_ / "governance.p7s") << governance;
   const std::string file = (folder_ / "permissions.p7s").string();
-  ASSERT_EQ(exit_code_of("openssl smime -verify -noverify -text -in " + file + " -out " + file + ".xml && openssl smime "
-                         "-sign -text -in " + file + ".xml -out " + file + " -signer " + folder_.string() +
-                         "/certificate.pem -inkey " + folder_.string() + "/private_key.pem"),
+  ASSERT_EQ(exit_code_of("openssl smime -verify -noverify -text -in " + file + " -out " + file +
+                         ".xml && openssl smime "
+                         "-sign -text -in " +
+                         file + ".xml -out " + file + " -signer " + folder_.string() + "/certificate.pem -inkey " +
+                         folder_.string() + "/private_key.pem"),
             0);
   EXPECT_THAT(problem(), HasSubstr("permissions.p7s: is not signed by CN=permissions authority"));
 }
@@ -151,9 +153,12 @@ TEST_F(DdsSecurityFiles, AGovernanceThatLeavesTheDomainOpenIsRefused) {
   for (const auto& [sed, reason] :
        {std::pair{"s_participants>false_participants>true_", "allow_unauthenticated_participants must be false"},
         std::pair{"s_join_access_control>true_join_access_control>false_", "enable_join_access_control must be true"},
-        std::pair{"s_discovery_protection_kind>E.*<_discovery_protection_kind>NONE<_", "discovery_protection_kind must"},
-        std::pair{"s_write_access_control>true_write_access_control>false_", "enable_write_access_control of topic_rule *"},
-        std::pair{"s_read_access_control>true_read_access_control>false_", "enable_read_access_control of topic_rule *"},
+        std::pair{"s_discovery_protection_kind>E.*<_discovery_protection_kind>NONE<_",
+                  "discovery_protection_kind must"},
+        std::pair{"s_write_access_control>true_write_access_control>false_",
+                  "enable_write_access_control of topic_rule *"},
+        std::pair{"s_read_access_control>true_read_access_control>false_",
+                  "enable_read_access_control of topic_rule *"},
         std::pair{"s_metadata_protection_kind>E.*<_metadata_protection_kind>NONE<_", "must not be NONE"}}) {
     change("governance", sed);
     EXPECT_THAT(problem(), HasSubstr(reason)) << sed;
