@@ -203,8 +203,7 @@ TEST_F(DdsSecurity, AReaderWhoDeceivesItsOwnMiddlewareIsNotBelieved) {
   Subscriber reader(folder);
   ASSERT_TRUE(domain_->until(kDiscovery_s, [&] { return reader.radars() == kRadars; }));
   forger.begin();
-  // It may read, which shows that it is authenticated.
-  EXPECT_TRUE(domain_->until(kDiscovery_s, [&] { return forger.read() > 0 && forger.written() > 0; }));
+  EXPECT_TRUE(domain_->until(kDiscovery_s, [&] { return forger.written() > 0; })) << "its own middleware lets it write";
   domain_->run_for(kTimeOfForgery_s);
   EXPECT_FALSE(forger.has_failed());
   EXPECT_EQ(reader.forged(), 0) << "samples of the insider at the reader";
