@@ -97,6 +97,23 @@ void read_pipeline(config::Reader& root, PipelineConfig& c) {
   c.max_work_budget_ratio = table.number("max_work_budget_ratio", {0.0, 0.9}, c.max_work_budget_ratio);
 }
 
+/// Whether the files can be used is checked when the domain is joined: a certificate that expired must not end the
+/// supervision.
+void read_security(config::Reader& dds, dds::SecurityConfig& c) {
+  config::Reader table = dds.table("security");
+  c.enabled = table.boolean("enabled", c.enabled);
+  c.directory = table.text("directory", c.directory);
+  c.identity_ca = table.text("identity_ca", c.identity_ca);
+  c.certificate = table.text("certificate", c.certificate);
+  c.private_key = table.text("private_key", c.private_key);
+  c.permissions_ca = table.text("permissions_ca", c.permissions_ca);
+  c.governance = table.text("governance", c.governance);
+  c.permissions = table.text("permissions", c.permissions);
+  if (!c.directory.empty() && c.directory.front() != '/') {
+    table.reject("directory", "must be an absolute path: a service has no folder of its own");
+  }
+}
+
 }  // namespace
 
 FileConfig read_config(config::Reader root) {
@@ -142,6 +159,7 @@ FileConfig read_config(config::Reader root) {
   c.dds.tracks_period_s = dds.number("tracks_period_s", {0.0, 10.0}, c.dds.tracks_period_s);
   c.dds.farewell_s = dds.number("farewell_s", {0.0, 2.0}, c.dds.farewell_s);
   c.dds.command_key_file = dds.text("command_key_file", c.dds.command_key_file);
+  read_security(dds, c.dds.security);
   root.finish();
   c.dds.domain = domain_from_environment(c.dds.domain);
   return c;

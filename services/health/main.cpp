@@ -1,11 +1,14 @@
 // boresight-health: heartbeats of services and data of radars in; verdicts out, on a topic and by DDS.
+#include <filesystem>
 #include <memory>
+#include <string>
 
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/service_main.hpp"
 #include "services/common/runtime/version.hpp"
 #include "services/health/config.hpp"
 #include "services/health/core/supervision.hpp"
+#include "services/health/dds/security.hpp"
 #include "services/health/fault_store.hpp"
 #include "services/health/level_store.hpp"
 #include "services/health/outlet.hpp"
@@ -74,11 +77,21 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   return exit_code;
 }
 
+/// The service runs without DDS if the files of security cannot be used; an installer shall know before.
+void inspect_security(const runtime::Configuration& files) {
+  const std::filesystem::path file = files.service_file("health");
+  const dds::Config config = health::read_config(config::Reader::open(file)).dds;
+  const std::string problem =
+      dds::check_security(config.security, config.domain, runtime::realtime_now_ns() / 1'000'000'000).problem;
+  if (config.enabled && !problem.empty()) throw config::Error(file.string() + ": " + problem);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   return runtime::service_main(
-      catalogue::Service::kHealth, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
+      catalogue::Service::kHealth, argc, argv,
+      [](const runtime::Configuration& files) -> runtime::Run {
         const VehicleConfig vehicle = files.vehicle();
         const health::FileConfig config = health::read_config(config::Reader::open(files.service_file("health")));
         const std::uint64_t configuration = health::configuration_fingerprint(files);
@@ -86,5 +99,6 @@ int main(int argc, char** argv) {
         return [vehicle, config, configuration, key](runtime::Node& node) {
           return run(node, vehicle, config, configuration, key);
         };
-      });
+      },
+      inspect_security);
 }

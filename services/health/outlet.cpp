@@ -8,12 +8,19 @@
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/health/dds/interfaces.hpp"
+#include "services/health/dds/security.hpp"
 
 namespace boresight::health {
 
 namespace {
 constexpr std::int64_t kRetryPeriod_ns = 5'000'000'000;
 constexpr const char* kRejection = "the middleware rejected a sample";
+constexpr const char* kExpired = "a file of DDS security has expired; new readers refuse this participant";
+
+std::int64_t now_s() {
+  return runtime::realtime_now_ns() / 1'000'000'000;
+}
+
 }  // namespace
 
 dds::CommandKey command_key_of(const dds::Config& config) {
@@ -55,6 +62,7 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
     const bool are_services_taken = channel_->topics.write(report, now);
     const bool is_report_taken = channel_->reports.write(report, now.epoch_ns);
     if (!(are_services_taken && is_report_taken) && problem.empty()) problem = kRejection;
+    if (has_expired() && problem.empty()) problem = kExpired;
   }
   report_mute(problem, now_ns);
 }
@@ -64,6 +72,10 @@ void Outlet::serve(std::int64_t now_ns) {
   for (const std::string& event : channel_->faults.serve(now_ns)) {
     runtime::log::warning("{}", event);
   }
+}
+
+bool Outlet::has_expired() const {
+  return now_s() > valid_until_s_;
 }
 
 dds::Now Outlet::moment(std::int64_t now_ns) {
@@ -106,7 +118,10 @@ std::string Outlet::look_at_interfaces() {
 std::string Outlet::open(std::int64_t now_ns) {
   try {
     channel_.emplace(config_, vehicle_, faults_, key_);
-    if (problem_.empty()) runtime::log::info("diagnostics are sent on DDS domain {}", config_.domain);
+    valid_until_s_ = dds::check_security(config_.security, config_.domain, now_s()).valid_until_s;
+    if (problem_.empty())
+      runtime::log::info("diagnostics are sent on DDS domain {}{}", config_.domain,
+                         config_.security.enabled ? ", secured" : "");
     return {};
   } catch (const std::exception& error) {
     retry_ns_ = now_ns + kRetryPeriod_ns;

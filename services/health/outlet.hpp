@@ -62,6 +62,8 @@ class Outlet {
   std::string look_at_interfaces();
   /// Joins the domain; returns why that is impossible.
   std::string open(std::int64_t now_ns);
+  /// Whether new readers refuse this participant, because a certificate or its permissions have expired.
+  [[nodiscard]] bool has_expired() const;
   /// `problem`: why readers cannot receive; "" if they can.
   void report_mute(const std::string& problem, std::int64_t now_ns);
 
@@ -71,6 +73,7 @@ class Outlet {
   FaultMemory& faults_;
   dds::CommandKey key_;
   std::optional<Channel> channel_;
+  std::int64_t valid_until_s_ = INT64_MAX;  // since the epoch
   std::int64_t next_ns_ = 0;
   std::int64_t retry_ns_ = 0;
   std::vector<std::string> used_addresses_;  ///< of the participant, as far as they were never lost

@@ -36,6 +36,7 @@ struct DiagnosticsOptions {
   runtime::Configuration configuration;
   std::optional<std::uint32_t> domain;
   std::vector<std::string> interfaces;
+  std::string security;  ///< folder; empty: an open domain
   bool array = false;
   TopicChoice topics;
   bool all = false;
@@ -124,6 +125,7 @@ class SystemChanges {
 dds::Config dds_of(const DiagnosticsOptions& options) {
   dds::Config config = health::read_config(config::Reader::open(options.configuration.service_file("health"))).dds;
   if (options.domain) config.domain = *options.domain;
+  if (!options.security.empty()) config.security = dds::secured_by(options.security);
   if (options.interfaces.empty()) return config;
   if (const auto problem = config::problem_of_interfaces(options.interfaces)) {
     throw UsageError("--interface: " + *problem);
@@ -210,6 +212,7 @@ void add_diagnostics_command(CLI::App& app, int& exit_code) {
           "Name or IPv4 address of a network interface to use, or \"all\"; repeatable; default: dds.interfaces "
           "of health.toml")
       ->type_name("NAME|ADDRESS");
+  add_security_option(*command, options->security);
   auto* const array = command->add_flag(
       "--array", options->array,
       "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health and boresight/system_health");

@@ -31,6 +31,7 @@ struct DtcOptions {
   std::string state;  ///< file; empty: DDS
   std::string code;
   std::string key;
+  std::string security;  ///< folder; empty: as health.toml says
   std::string json;
   double seconds = 10.0;  ///< discovery takes some 20 ms, and seconds more if a datagram was lost
 };
@@ -45,6 +46,7 @@ struct FaultList {
 dds::Config dds_of(const DtcOptions& options) {
   dds::Config config = health::read_config(config::Reader::open(options.configuration.service_file("health"))).dds;
   if (!options.key.empty()) config.command_key_file = options.key;
+  if (!options.security.empty()) config.security = dds::secured_by(options.security);
   return config;
 }
 
@@ -71,7 +73,7 @@ std::string head_of(const std::string& vehicle, std::uint32_t cycle, std::uint32
 
 FaultList list_by_dds(const DtcOptions& options) {
   const dds::Config config = dds_of(options);
-  dds::FaultMemoryClient client(config);
+  dds::FaultMemoryClient client(config, dds::FaultMemoryClient::Use::kRead);
   if (!wait_for(options, client, [&] { return client.is_complete(); })) report_absence(options, config.domain);
   FaultList list;
   const diagnostics::FaultMemoryState& state = *client.state();
@@ -141,7 +143,7 @@ int run_clear(const DtcOptions& options) {
   std::string problem;
   const dds::CommandKey key = dds::read_command_key(config.command_key_file, problem);
   if (!problem.empty()) throw UsageError(problem);
-  dds::FaultMemoryClient client(config);
+  dds::FaultMemoryClient client(config, dds::FaultMemoryClient::Use::kCommand);
   if (!wait_for(options, client, [&] { return client.state() && client.can_command(); })) {
     report_absence(options, config.domain);
   }
@@ -170,6 +172,7 @@ CLI::App* add(CLI::App& parent, const char* name, const char* about, DtcOptions&
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->capture_default_str();
+  add_security_option(*command, options.security);
   return command;
 }
 

@@ -164,6 +164,13 @@ CLI::Option* add_json_option(CLI::App& command, std::string& file, const std::st
   return command.add_option("--json", file, about)->expected(0, 1)->default_str("-")->option_text("[FILE]");
 }
 
+CLI::Option* add_security_option(CLI::App& command, std::string& directory) {
+  return command
+      .add_option("--security", directory,
+                  "Folder with the files of DDS Security: identity, permissions; deploy/dds_security makes it")
+      ->type_name("DIRECTORY");
+}
+
 InputFile::InputFile(const std::string& file) : std::istream(nullptr) {
   errno = 0;
   if (buffer_.open(file, std::ios::in) == nullptr) throw std::runtime_error(file + ": " + std::strerror(errno));

@@ -66,6 +66,9 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error);
 /// not given.
 CLI::Option* add_json_option(CLI::App& command, std::string& file, const std::string& about);
 
+/// --security DIRECTORY: identity and permissions in a secured DDS domain.
+CLI::Option* add_security_option(CLI::App& command, std::string& directory);
+
 /// A text file being read; a signal ends the reading with Interrupted.
 class InputFile : public std::istream {
  public:

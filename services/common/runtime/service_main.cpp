@@ -14,7 +14,7 @@
 
 namespace boresight::runtime {
 
-int service_main(catalogue::Service self, int argc, char** argv, const Load& load) {
+int service_main(catalogue::Service self, int argc, char** argv, const Load& load, const Inspect& inspect) {
   const std::string name = "boresight-" + std::string(catalogue::name_of(self));
   Configuration configuration;
   bool check = false;
@@ -38,6 +38,7 @@ int service_main(catalogue::Service self, int argc, char** argv, const Load& loa
   try {
     const Run run = load(configuration);
     if (check) {
+      if (inspect) inspect(configuration);
       std::cout << name << ": configuration is valid (" << configuration.directory.string() << ")\n";
       return exit_code::kSuccess;
     }

@@ -13,8 +13,11 @@ using Run = std::function<int(Node&)>;
 /// Reads the configuration (throws config::Error) and returns what to run with it.
 using Load = std::function<Run(const Configuration&)>;
 
+/// What --check looks at in addition: findings with which the service runs nevertheless. Throws config::Error.
+using Inspect = std::function<void(const Configuration&)>;
+
 /// Handles --config DIR, --vehicle NAME|FILE, --check, --version, --help and SIGTERM. Returns an exit code of
 /// exit_codes.hpp.
-int service_main(catalogue::Service self, int argc, char** argv, const Load& load);
+int service_main(catalogue::Service self, int argc, char** argv, const Load& load, const Inspect& inspect = {});
 
 }  // namespace boresight::runtime

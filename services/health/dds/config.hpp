@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "services/health/dds/security_config.hpp"
+
 namespace boresight::dds {
 
 struct Config {
@@ -18,6 +20,7 @@ struct Config {
   double farewell_s = 0.2;        ///< longest time that the end of the service waits for readers to learn of it
   /// File with the secret of those who may command; "": nobody may.
   std::string command_key_file;
+  SecurityConfig security = {};
 };
 
 }  // namespace boresight::dds

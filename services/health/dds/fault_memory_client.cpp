@@ -31,7 +31,7 @@ void take_all(fast::DataReader& reader, const Take& take) {
 
 class FaultMemoryClient::Entities {
  public:
-  explicit Entities(const Config& config)
+  Entities(const Config& config, Use use)
       : participant(config, "boresight"),
         records(participant.reader(kFaultRecordTopic, guarded<diagnostics::FaultRecordPubSubType>(kFaultRecordTopic),
                                    nullptr)),
@@ -39,16 +39,19 @@ class FaultMemoryClient::Entities {
                                  guarded<diagnostics::FaultMemoryStatePubSubType>(kFaultMemoryStateTopic), nullptr)),
         replies(participant.reader(kCommandReplyTopic, guarded<diagnostics::CommandReplyPubSubType>(kCommandReplyTopic),
                                    nullptr)),
-        commands(participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(kCommandTopic))) {}
+        commands(use == Use::kCommand
+                     ? &participant.writer(kCommandTopic, guarded<diagnostics::ClearCommandPubSubType>(kCommandTopic))
+                     : nullptr) {}
 
   Participant participant;
   fast::DataReader& records;
   fast::DataReader& state;
   fast::DataReader& replies;
-  fast::DataWriter& commands;
+  fast::DataWriter* commands;  // null: this client only reads
 };
 
-FaultMemoryClient::FaultMemoryClient(const Config& config) : entities_(std::make_unique<Entities>(config)) {}
+FaultMemoryClient::FaultMemoryClient(const Config& config, Use use)
+    : entities_(std::make_unique<Entities>(config, use)) {}
 FaultMemoryClient::~FaultMemoryClient() = default;
 
 void FaultMemoryClient::poll() {
@@ -83,20 +86,22 @@ bool FaultMemoryClient::is_complete() const {
 }
 
 bool FaultMemoryClient::can_command() const {
+  if (entities_->commands == nullptr) return false;
   fast::PublicationMatchedStatus commands;
   fast::SubscriptionMatchedStatus replies;
-  entities_->commands.get_publication_matched_status(commands);
+  entities_->commands->get_publication_matched_status(commands);
   entities_->replies.get_subscription_matched_status(replies);
   return commands.current_count > 0 && replies.current_count > 0;
 }
 
 void FaultMemoryClient::clear(std::uint32_t dtc, std::uint64_t number, const CommandKey& key) {
+  if (entities_->commands == nullptr) return;
   diagnostics::ClearCommand command;
   asked_.insert(number);
   command.number(number);
   command.dtc(dtc);
   command.authentication(authentication_of(key, state_->challenge(), number, dtc));
-  entities_->commands.write(&command);
+  entities_->commands->write(&command);
 }
 
 const diagnostics::CommandReply* FaultMemoryClient::reply(std::uint64_t number) const {

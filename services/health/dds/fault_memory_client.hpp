@@ -16,8 +16,11 @@ namespace boresight::dds {
 
 class FaultMemoryClient {
  public:
+  /// A secured domain may permit a participant to read, and not to command.
+  enum class Use : std::uint8_t { kRead, kCommand };
+
   /// Joins the domain; throws std::runtime_error if that is impossible.
-  explicit FaultMemoryClient(const Config& config);
+  FaultMemoryClient(const Config& config, Use use);
   ~FaultMemoryClient();
 
   /// Takes what has been received.
@@ -29,7 +32,8 @@ class FaultMemoryClient {
   /// True when as many stored records as the state counts were received.
   [[nodiscard]] bool is_complete() const;
 
-  /// Whether a command would arrive: the service reads commands, and its replies are read here.
+  /// Whether a command would arrive: the service reads commands, and its replies are read here. Needs Use::kCommand,
+  /// as clear() does.
   [[nodiscard]] bool can_command() const;
   /// Sends a command with the answer to the latest challenge; state() must be known.
   void clear(std::uint32_t dtc, std::uint64_t number, const CommandKey& key);

@@ -14,6 +14,7 @@
 
 #include "services/common/runtime/config/network_values.hpp"
 #include "services/health/dds/interfaces.hpp"
+#include "services/health/dds/security.hpp"
 
 namespace boresight::dds {
 
@@ -60,6 +61,7 @@ Participant::Participant(const Config& config, const std::string& name) : period
   if (!uses_all) udp->interfaceWhiteList = usable.addresses;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
+  secure(qos, config.security, config.domain);
   auto* const factory = fast::DomainParticipantFactory::get_instance();
   participant_ =
       made(factory->create_participant(config.domain, qos), "a participant of domain " + std::to_string(config.domain));

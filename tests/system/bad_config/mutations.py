@@ -235,7 +235,8 @@ add_values("health",
            ("period_s", "1e9", "dds.period_s"), ("farewell_s", "3.0", "dds.farewell_s"), ("tracks_period_s", "-0.1", "dds.tracks_period_s"),
            ("tracks_period_s", "nan", "dds.tracks_period_s"), ("tracks_period_s", "0.0", None), ("tracks", "1", "dds.tracks"), ("tracks", "false", None), ("enabled", '"yes"', "fault_memory.enabled"), ("enabled", "false", None),
            ("ageing_cycles", "0", "fault_memory.ageing_cycles"), ("operation_cycle", '"drive"', "fault_memory.operation_cycle"),
-           ("start_grace_s", "0", "supervision.start_grace_s"))
+           ("start_grace_s", "0", "supervision.start_grace_s"),
+           ("directory", '"keys"', "dds.security.directory"), ("directory", '"/absent"', None), ("governance", "5", "dds.security.governance"))
 add_values("tracker",
            ("probability", "nan", "detection.probability"), ("probability", "0", "detection.probability"),
            ("confirmed_existence", "0.03", "report.confirmed_existence"),

@@ -97,6 +97,15 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(read.level_store.path, "");
   EXPECT_EQ(read.level_store.write_period_s, LevelStoreConfig().write_period_s);
   EXPECT_EQ(read.dds.command_key_file, "") << "nobody may command unless the integrator wants it";
+  const dds::SecurityConfig security;
+  EXPECT_EQ(read.dds.security.enabled, security.enabled);
+  EXPECT_EQ(read.dds.security.directory, security.directory);
+  EXPECT_EQ(read.dds.security.identity_ca, security.identity_ca);
+  EXPECT_EQ(read.dds.security.certificate, security.certificate);
+  EXPECT_EQ(read.dds.security.private_key, security.private_key);
+  EXPECT_EQ(read.dds.security.permissions_ca, security.permissions_ca);
+  EXPECT_EQ(read.dds.security.governance, security.governance);
+  EXPECT_EQ(read.dds.security.permissions, security.permissions);
 }
 
 TEST(HealthConfig, DebounceTimesOfEachEventAreReadIntoTheirPlace) {
@@ -113,7 +122,21 @@ TEST(HealthConfig, DebounceTimesOfEachEventAreReadIntoTheirPlace) {
   }
 }
 
+TEST(HealthConfig, SecurityIsReadKeyByKey) {
+  const FileConfig read = read_config(config::Reader::parse(
+      "[dds.security]\nenabled = true\ndirectory = \"/d\"\nidentity_ca = \"i\"\ncertificate = \"c\"\nprivate_key = "
+      "\"k\"\npermissions_ca = \"p\"\ngovernance = \"g\"\npermissions = \"r\"\n",
+      "health.toml"));
+  const dds::SecurityConfig& security = read.dds.security;
+  EXPECT_TRUE(security.enabled);
+  EXPECT_EQ(security.directory, "/d");
+  EXPECT_EQ(security.identity_ca + security.certificate + security.private_key, "ick");
+  EXPECT_EQ(security.permissions_ca + security.governance + security.permissions, "pgr");
+}
+
 TEST(HealthConfig, NonsenseIsRefusedWithWhatIsAllowed) {
+  EXPECT_THAT(problems_of("[dds.security]\ndirectory = \"keys\""), testing::HasSubstr("absolute path"));
+  EXPECT_THAT(problems_of("[dds.security]\nenable = true"), testing::HasSubstr("enabled"));
   EXPECT_THAT(problems_of("[debounce]\nno_dat = {set_s = 1.0}"), testing::HasSubstr("no_data"));
   EXPECT_THAT(problems_of("[debounce]\nno_data = {set_s = 11.0}"), testing::HasSubstr("10"));
   EXPECT_THAT(problems_of("[pipeline]\nwindow_s = 0.4"), testing::HasSubstr("0.1 … 0.35")) << "too late a verdict";
