@@ -90,7 +90,8 @@ template <typename Enum, std::size_t N>
                                                                     "over capacity",
                                                                     "link",
                                                                     "input dropped",
-                                                                    "work budget"};
+                                                                    "work budget",
+                                                                    "foreign memory"};
   return detail::word_of(kNames, fault);
 }
 

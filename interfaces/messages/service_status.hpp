@@ -22,8 +22,9 @@ enum class Fault : std::uint8_t {
   kLink = 10,             ///< socket error, interface down, kernel drops
   kInputDropped = 11,     ///< a waiting scan was superseded by a newer one of its radar: the service was too slow
   kWorkBudget = 12,       ///< the work on a scan ended before it was complete, to be in time
+  kForeignMemory = 13,    ///< a message that does not lie in the memory of its topic's writer: refused
 };
-inline constexpr std::size_t kNumberOfFaults = 13;
+inline constexpr std::size_t kNumberOfFaults = 14;
 
 /// A sensor's self-diagnosis in its status messages.
 namespace source_condition {
@@ -56,7 +57,7 @@ static_assert(sizeof(SourceStatistics) == 72);
 /// Published by every service each heartbeat period. Counters never decrease while a process lives. `incarnation_ns`
 /// is its start time, so that a change shows a restart.
 struct ServiceStatus {
-  static constexpr std::uint32_t kVersion = 4;
+  static constexpr std::uint32_t kVersion = 5;
 
   MessageHeader header;  ///< source_id is the service's index in the catalogue
   std::int64_t incarnation_ns;

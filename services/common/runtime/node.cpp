@@ -242,21 +242,22 @@ void Node::set_degraded(bool degraded) {
 }
 
 /// False for a message that another process than the topic's writer wrote, or that has another layout version.
-bool Node::Impl::is_acceptable(const Input& input, const MessageHeader& message) {
+std::optional<Fault> Node::Impl::reason_to_refuse(const Input& input, const MessageHeader& message) {
   if (!segments.accept(input.topic, message)) {
     std::snprintf(status.last_fault.data(), status.last_fault.size(), "%.*s refused: not in the memory of its writer",
                   static_cast<int>(input.topic.name.size()), input.topic.name.data());
-    return false;
+    return Fault::kForeignMemory;
   }
-  return message.version == input.version;
+  if (message.version != input.version) return Fault::kVersionMismatch;
+  return std::nullopt;
 }
 
 /// The next acceptable message, whose loss or arrival is counted; nullptr if none waits.
 const MessageHeader* Node::Impl::take_from_queue(Input& input) {
   for (auto result = input.port.take(); !result.has_error(); result = input.port.take()) {
     const auto& header = *static_cast<const MessageHeader*>(result.value());
-    if (!is_acceptable(input, header)) {
-      ++status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
+    if (const std::optional<Fault> refusal = reason_to_refuse(input, header)) {
+      ++status.faults[static_cast<std::size_t>(*refusal)];
       ++input.refused;
       input.port.release(&header);
       continue;

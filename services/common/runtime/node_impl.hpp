@@ -86,7 +86,7 @@ struct Node::Impl {
   bool take_one(Input& input);
   bool take_newest(Input& input);
   const MessageHeader* take_from_queue(Input& input);
-  [[nodiscard]] bool is_acceptable(const Input& input, const MessageHeader& message);
+  [[nodiscard]] std::optional<Fault> reason_to_refuse(const Input& input, const MessageHeader& message);
   void drop(Input& input, const MessageHeader& message);
   void handle(Input& input, const MessageHeader& message, std::uint64_t dropped);
   void run_timers();

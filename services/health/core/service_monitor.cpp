@@ -20,7 +20,7 @@ std::uint64_t losses_of(const ServiceStatus& status) {
 
 std::uint64_t rejections_of(const ServiceStatus& status) {
   return sum_of(status, {Fault::kWireLength, Fault::kWireValue, Fault::kWireUnknown, Fault::kRecordingSyntax,
-                         Fault::kVersionMismatch});
+                         Fault::kVersionMismatch, Fault::kForeignMemory});
 }
 
 std::uint64_t grown(std::uint64_t now, std::uint64_t before) {

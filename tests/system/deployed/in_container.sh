@@ -115,7 +115,7 @@ check "only health reaches the fault memory" closed health
 # refusals SERVICE: messages that this service refused.
 refusals() {
   local count
-  count=$(monitor 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"wrong version\":[0-9]*" | grep -o '[0-9]*$')
+  count=$(monitor 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"foreign memory\":[0-9]*" | grep -o '[0-9]*$')
   echo "${count:-0}"
 }
 check "the readers refused no message so far" [ "$(refusals detection_corrector)" = 0 ]

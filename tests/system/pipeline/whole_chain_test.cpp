@@ -208,8 +208,9 @@ TEST_F(WholeChain, NoServiceAllocatesPerScanOrRejectsAnything) {
     const ServiceStatus& status = last[static_cast<std::uint32_t>(i)]->status;
     EXPECT_EQ(status.heap_allocations, 0u) << service;
     EXPECT_GT(status.inputs, 0u) << service;
-    for (const Fault fault : {Fault::kInputLost, Fault::kLoanFailed, Fault::kWireLength, Fault::kWireValue,
-                              Fault::kTimeJump, Fault::kVersionMismatch, Fault::kCapacity, Fault::kLink}) {
+    for (const Fault fault :
+         {Fault::kInputLost, Fault::kLoanFailed, Fault::kWireLength, Fault::kWireValue, Fault::kTimeJump,
+          Fault::kVersionMismatch, Fault::kForeignMemory, Fault::kCapacity, Fault::kLink}) {
       EXPECT_EQ(status.faults[static_cast<std::size_t>(fault)], 0u)
           << service << ", fault " << static_cast<int>(fault) << ": " << status.last_fault.data();
     }
