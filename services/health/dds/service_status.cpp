@@ -12,7 +12,7 @@ namespace boresight::dds {
 namespace {
 
 // A new layout of the messages needs a look at the IDL.
-static_assert(ServiceStatus::kVersion == 4 && sizeof(SourceStatistics) == 72 && sizeof(ServiceHealth) == 64);
+static_assert(ServiceStatus::kVersion == 5 && sizeof(SourceStatistics) == 72 && sizeof(ServiceHealth) == 64);
 static_assert(kNumberOfFaults <= 32 && kMaxRadars == 16);
 static_assert(static_cast<int>(ServiceCondition::kRestarted) == diagnostics::CONDITION_RESTARTED);
 static_assert(static_cast<int>(ServiceState::kStopping) == diagnostics::SERVICE_STOPPING);

@@ -23,7 +23,6 @@ class Forger {
 
   /// Joins the domain.
   void begin() { counts_->may_begin = true; }
-  [[nodiscard]] int written() const { return counts_->written; }
   /// Samples of the health service that it has read.
   [[nodiscard]] int read() const { return counts_->read; }
   [[nodiscard]] bool has_failed() const { return counts_->failed; }
@@ -31,7 +30,7 @@ class Forger {
  private:
   struct Counts {
     std::atomic<bool> may_begin, failed;
-    std::atomic<int> written, read;
+    std::atomic<int> read;
   };
   [[nodiscard]] static int run(Counts& counts, std::uint32_t domain, const std::string& credentials);
 

@@ -71,7 +71,7 @@ TEST_F(DdsSilence, AnUnpluggedEcuIsStaleWithinTwoSecondsAndBackWithItsCable) {
   start_health(R"(["127.0.0.1", "radar0"])");
   hosts().as(network::Host::kSensors, [&] { tool_ = std::make_unique<Tool>(config({network::kServerInterface})); });
   ASSERT_TRUE(all_present()) << "an interface is given by its name";
-  FaultMemoryClient on_ecu(config({"127.0.0.1", network::kEcuInterface}));
+  FaultMemoryClient on_ecu(config({"127.0.0.1", network::kEcuInterface}), FaultMemoryClient::Use::kRead);
   EXPECT_TRUE(mute_becomes(false, on_ecu, 10.0));
   hosts().cut_cable();
   EXPECT_TRUE(all_absent());
@@ -93,7 +93,7 @@ TEST_F(DdsSilence, ByDefaultOtherMachinesReceiveNothing) {
 
 TEST_F(DdsSilence, AnInterfaceThatDoesNotExistIsAFindingAndTheOthersWork) {
   start_health(R"(["127.0.0.1", "nosuch0"])");
-  FaultMemoryClient client(config({"127.0.0.1"}));
+  FaultMemoryClient client(config({"127.0.0.1"}), FaultMemoryClient::Use::kRead);
   EXPECT_TRUE(mute_becomes(true, client, 10.0));
 }
 
