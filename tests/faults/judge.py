@@ -1,0 +1,123 @@
+"""Judges one fault by the observers' records. Pure.
+
+Bars are in `Bars`; README.md states what each figure means."""
+import dataclasses
+
+import records as r
+
+
+@dataclasses.dataclass(frozen=True)
+class Bars:
+    """Limits of a campaign, with their origin. s."""
+    report_validity_s: float = 0.5  # deadline of health_report in the catalogue
+    sample_validity_s: float = 2.0  # of a sample on DDS: two of its periods
+    detection_s: float = 0.5  # from the last scan or track list to the verdict: README of health, Pipeline
+    bad_input_s: float = 5.0  # from the begin of useless input to the verdict: the issue's 2 to 5 s
+    yaw_error_rad: float = 0.0087  # 0.5°; a larger error of the restored mounting is a lost memory (choice)
+    recovery_s: float = 30.0  # choice: the longest delay between two starts is 5 s
+    outage_p99_s: float = 2.0
+    data_path_kill_p99_s: float = 1.0
+    roudi_s: float = 2.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Truth:
+    misaligned: dict  # radar: yaw in rad, of those beyond their tolerance
+    well_mounted: tuple
+
+    @property
+    def radars(self):
+        return sorted([*self.misaligned, *self.well_mounted])
+
+
+@dataclasses.dataclass(frozen=True)
+class Window:
+    """Time of one fault, ns. Records before `begin_ns` are context. `excused`: intervals in which the fault itself
+    withholds the input or leaves no service that could work; `useless`: (begin, end, radar) of useless input."""
+    begin_ns: int
+    end_ns: int
+    excused: tuple = ()
+    useless: tuple = ()
+
+
+def _clipped_ns(window, begin_ns, end_ns):
+    return max(0, min(end_ns, window.end_ns) - max(begin_ns, window.begin_ns))
+
+
+def _seconds(ns):
+    return round(ns / r.SECOND_NS, 3)
+
+
+def _verdicts(records, bars, strangers):
+    """(radar, verdict, reason, begin, end) on either way, and the way's name."""
+    validity_ns = int(bars.report_validity_s * r.SECOND_NS)
+    for report, begin, end in r.valid_until(r.of(records, "health_report", "detached"), validity_ns):
+        for radar, verdict, reason in report.get("radars", ()):
+            yield "health_report", radar, verdict, reason, begin, end
+    validity_ns = int(bars.sample_validity_s * r.SECOND_NS)
+    samples = [s for s in r.of(records, "dds_sensor") if s["writer"] not in strangers]
+    for radar in {s["radar"] for s in samples}:
+        of_radar = [s for s in samples if s["radar"] == radar]
+        for sample, begin, end in r.valid_until(of_radar, validity_ns):
+            yield "dds", radar, sample["verdict"], sample["reason"], begin, end
+
+
+def false_verdicts(records, truth, window, bars, strangers=()):
+    """Seconds, by what is false. A verdict counts from its publication until the next, or until it is no longer valid;
+    at least a microsecond, so that a single false sample is seen."""
+    detection_ns = int(bars.detection_s * r.SECOND_NS)
+    bad_input_ns = int(bars.bad_input_s * r.SECOND_NS)
+    silent = {radar: r.silences(records, "radar_scan", detection_ns, window.end_ns, radar) for radar in truth.radars}
+    for begin, end, radar in window.useless:
+        silent[radar] = [*silent[radar], (begin + bad_input_ns, end)]
+    ns = {"available_misaligned": 0, "available_silent": 0, "misaligned": 0, "pipeline_available": 0}
+    for way, radar, verdict, reason, begin, end in _verdicts(records, bars, strangers):
+        held_ns = _clipped_ns(window, begin, end)
+        if radar in truth.misaligned and verdict == r.AVAILABLE:
+            ns["available_misaligned"] += held_ns
+        elif radar in silent and verdict == r.AVAILABLE and way == "health_report":
+            ns["available_silent"] += sum(_clipped_ns(window, max(begin, b), min(end, e)) for b, e in silent[radar])
+        elif radar in silent and verdict == r.AVAILABLE and any(b < begin < e for b, e in silent[radar]):
+            ns["available_silent"] += held_ns  # a sample on DDS counts if it was false when it was sent
+        if radar in truth.well_mounted and reason == r.MISALIGNED:
+            ns["misaligned"] += held_ns
+    no_tracks = r.silences(records, "track_list", detection_ns, window.end_ns)
+    validity_ns = int(bars.report_validity_s * r.SECOND_NS)
+    for report, begin, end in r.valid_until(r.of(records, "health_report", "detached"), validity_ns):
+        if r.AVAILABLE in (report.get("pipeline"), report.get("overall")):
+            ns["pipeline_available"] += sum(_clipped_ns(window, max(begin, b), min(end, e)) for b, e in no_tracks)
+    return {name: _seconds(value) for name, value in ns.items()}
+
+
+def outage_s(records, window):
+    """Longest time without any track list, less the excused parts."""
+    times = [record["at_ns"] for record in r.of(records, "track_list")]
+    return _seconds(r.longest_gap_ns(times, window.begin_ns, window.end_ns, window.excused))
+
+
+def lost_alignment(records, truth, window, bars):
+    """Radars whose restored estimate is not the one that was stored."""
+    return sorted({e["radar"] for e in r.of(records, "alignment_estimate")
+                   if window.begin_ns < e["at_ns"] <= window.end_ns and e["radar"] in truth.misaligned
+                   and abs(e["yaw_rad"] - truth.misaligned[e["radar"]]) > bars.yaw_error_rad})
+
+
+def is_good(records, truth, now_ns, within_s=0.4):
+    """Whether the product works as before any fault: every radar has track lists, and health reports the truth."""
+    since_ns = now_ns - int(within_s * r.SECOND_NS)
+    last_report = None
+    tracked = set()
+    for record in reversed(records):
+        if record["at_ns"] < since_ns:
+            break
+        if record["topic"] == "track_list":
+            tracked.add(record["radar"])
+        elif record["topic"] == "health_report" and last_report is None:
+            last_report = record
+    if last_report is None or tracked < set(truth.radars):
+        return False
+    wanted = {radar: (r.AVAILABLE, r.NORMAL) for radar in truth.well_mounted}
+    wanted |= {radar: (r.AVAILABLE_REDUCED, r.MISALIGNED) for radar in truth.misaligned}
+    reported = {radar: (verdict, reason) for radar, verdict, reason in last_report["radars"]}
+    return (reported == wanted and last_report["pipeline"] == r.AVAILABLE
+            and all(condition in (r.ALIVE, r.RESTARTED) for condition in last_report["services"]))
