@@ -21,6 +21,7 @@ import state
 BASELINE_LIMIT_S = 90.0  # the shipped drive shows the misalignment after 15 s
 CONTEXT_NS = 3 * r.SECOND_NS  # records kept from before a fault: verdicts and scans that still count
 SETTLED_S = 0.3  # for which everything must be good
+WATCHED_S = 0.5  # after a fault at least, as some act late
 POLL_S = 0.02
 FOLDER = pathlib.Path("/tmp/campaign")
 
@@ -55,21 +56,17 @@ class Campaign:
     def _take(self):
         self.records += self.product.take_records()
 
-    def _is_good(self):
-        self._take()
-        return judge.is_good(self.records, self.truth, time.monotonic_ns())
-
     def wait_until_good(self, limit_s):
-        """Time at which everything has been good for SETTLED_S, less that time; None after the limit."""
-        end = time.monotonic() + limit_s
-        good_since = None
-        while time.monotonic() < end:
-            if not self._is_good():
-                good_since = None
-            elif good_since is None:
+        """Time since the call after which everything was good, for SETTLED_S and by records of that time; None after
+        the limit."""
+        begin_ns = time.monotonic_ns()
+        begin = good_since = time.monotonic()
+        while time.monotonic() < begin + limit_s:
+            self._take()
+            if not judge.is_good(self.records, self.truth, time.monotonic_ns(), begin_ns):
                 good_since = time.monotonic()
-            if good_since is not None and time.monotonic() - good_since >= SETTLED_S:
-                return good_since
+            elif time.monotonic() >= max(good_since + SETTLED_S, begin + WATCHED_S):
+                return good_since - begin
             time.sleep(POLL_S)
         return None
 
@@ -78,7 +75,7 @@ class Campaign:
         self.product.start()
         end = time.monotonic() + BASELINE_LIMIT_S
         while time.monotonic() < end:
-            if self.wait_until_good(1.0) and not state.losses(self.product):
+            if self.wait_until_good(2.0) is not None and not state.losses(self.product):
                 self.product.run_for(1.0)
                 self._take()
                 self.judged_until_ns = time.monotonic_ns()
@@ -137,8 +134,7 @@ class Campaign:
         load = Load()
         begin_ns = time.monotonic_ns()
         findings, excused, useless = self._inject(fault)
-        injected = time.monotonic()
-        good_at = self.wait_until_good(self.bars.recovery_s)
+        good_after_s = self.wait_until_good(self.bars.recovery_s)
         self._take()
         end_ns = time.monotonic_ns()
         window = judge.Window(begin_ns, end_ns, tuple(excused), tuple(useless))
@@ -150,12 +146,12 @@ class Campaign:
         result = {
             "seed": self.options.seed, "number": fault.number, "group": fault.group(), "text": fault.text(),
             "injections": [vars(injection) for injection in fault.injections],
-            "busy_cores": round(load.busy_cores(), 2), "recovered": good_at is not None,
-            "recovered_after_s": None if good_at is None else round(max(0.0, good_at - injected), 3),
+            "busy_cores": round(load.busy_cores(), 2), "recovered": good_after_s is not None,
+            "recovered_after_s": good_after_s and round(good_after_s, 3),
             "outage_s": judge.outage_s(self.records, window),
             "false_s": judge.false_verdicts(self.records, self.truth, verdicts, self.bars, self.product.strangers),
             "lost_states": lost, "findings": findings + list(self._crashes()),
-            "state": "" if good_at is not None else self._state(),
+            "state": "" if good_after_s is not None else self._state(),
         }
         self.results.append(result)
         self.file.write(json.dumps(result) + "\n")

@@ -48,44 +48,58 @@ def _seconds(ns):
     return round(ns / r.SECOND_NS, 3)
 
 
-def _verdicts(records, bars, strangers):
-    """(radar, verdict, reason, begin, end) on either way, and the way's name."""
+def _reports(records, bars):
     validity_ns = int(bars.report_validity_s * r.SECOND_NS)
-    for report, begin, end in r.valid_until(r.of(records, "health_report", "detached"), validity_ns):
+    return r.valid_until(r.of(records, "health_report", "detached"), validity_ns)
+
+
+def _verdicts(records, bars, strangers):
+    """(radar, verdict, reason, begin, end) in shared memory and on DDS."""
+    for report, begin, end in _reports(records, bars):
         for radar, verdict, reason in report.get("radars", ()):
-            yield "health_report", radar, verdict, reason, begin, end
+            yield radar, verdict, reason, begin, end
     validity_ns = int(bars.sample_validity_s * r.SECOND_NS)
     samples = [s for s in r.of(records, "dds_sensor") if s["writer"] not in strangers]
     for radar in {s["radar"] for s in samples}:
         of_radar = [s for s in samples if s["radar"] == radar]
         for sample, begin, end in r.valid_until(of_radar, validity_ns):
-            yield "dds", radar, sample["verdict"], sample["reason"], begin, end
+            yield radar, sample["verdict"], sample["reason"], begin, end
+
+
+def _is_within(at_ns, intervals):
+    return any(begin < at_ns < end for begin, end in intervals)
+
+
+def _lists_withheld(records, limit_ns, until_ns):
+    """Intervals in which scans come, and have come for longer than `limit_ns`, without any track list."""
+    scans_ns = [record["at_ns"] for record in r.of(records, "radar_scan")]
+    for begin, end in r.silences(records, "track_list", 0, until_ns):
+        unanswered = [at for at in scans_ns if begin < at < end]
+        if unanswered and unanswered[0] + limit_ns < unanswered[-1]:
+            yield unanswered[0] + limit_ns, unanswered[-1]
 
 
 def false_verdicts(records, truth, window, bars, strangers=()):
-    """Seconds, by what is false. A verdict counts from its publication until the next, or until it is no longer valid;
-    at least a microsecond, so that a single false sample is seen."""
+    """Seconds, by what is false. A verdict that was false when it was published counts until the next one, or until it
+    is no longer valid."""
     detection_ns = int(bars.detection_s * r.SECOND_NS)
     bad_input_ns = int(bars.bad_input_s * r.SECOND_NS)
     silent = {radar: r.silences(records, "radar_scan", detection_ns, window.end_ns, radar) for radar in truth.radars}
     for begin, end, radar in window.useless:
         silent[radar] = [*silent[radar], (begin + bad_input_ns, end)]
     ns = {"available_misaligned": 0, "available_silent": 0, "misaligned": 0, "pipeline_available": 0}
-    for way, radar, verdict, reason, begin, end in _verdicts(records, bars, strangers):
+    for radar, verdict, reason, begin, end in _verdicts(records, bars, strangers):
         held_ns = _clipped_ns(window, begin, end)
         if radar in truth.misaligned and verdict == r.AVAILABLE:
             ns["available_misaligned"] += held_ns
-        elif radar in silent and verdict == r.AVAILABLE and way == "health_report":
-            ns["available_silent"] += sum(_clipped_ns(window, max(begin, b), min(end, e)) for b, e in silent[radar])
-        elif radar in silent and verdict == r.AVAILABLE and any(b < begin < e for b, e in silent[radar]):
-            ns["available_silent"] += held_ns  # a sample on DDS counts if it was false when it was sent
+        elif radar in silent and verdict == r.AVAILABLE and _is_within(begin, silent[radar]):
+            ns["available_silent"] += held_ns
         if radar in truth.well_mounted and reason == r.MISALIGNED:
             ns["misaligned"] += held_ns
-    no_tracks = r.silences(records, "track_list", detection_ns, window.end_ns)
-    validity_ns = int(bars.report_validity_s * r.SECOND_NS)
-    for report, begin, end in r.valid_until(r.of(records, "health_report", "detached"), validity_ns):
-        if r.AVAILABLE in (report.get("pipeline"), report.get("overall")):
-            ns["pipeline_available"] += sum(_clipped_ns(window, max(begin, b), min(end, e)) for b, e in no_tracks)
+    no_tracks = list(_lists_withheld(records, detection_ns, window.end_ns))
+    for report, begin, end in _reports(records, bars):
+        if r.AVAILABLE in (report.get("pipeline"), report.get("overall")) and _is_within(begin, no_tracks):
+            ns["pipeline_available"] += _clipped_ns(window, begin, end)
     return {name: _seconds(value) for name, value in ns.items()}
 
 
@@ -102,9 +116,10 @@ def lost_alignment(records, truth, window, bars):
                    and abs(e["yaw_rad"] - truth.misaligned[e["radar"]]) > bars.yaw_error_rad})
 
 
-def is_good(records, truth, now_ns, within_s=0.4):
-    """Whether the product works as before any fault: every radar has track lists, and health reports the truth."""
-    since_ns = now_ns - int(within_s * r.SECOND_NS)
+def is_good(records, truth, now_ns, not_before_ns=0, within_s=0.4):
+    """Whether the product works as before any fault: every radar has track lists, and health reports the truth. Only
+    records of the last `within_s` count, and none before `not_before_ns`."""
+    since_ns = max(not_before_ns, now_ns - int(within_s * r.SECOND_NS))
     last_report = None
     tracked = set()
     for record in reversed(records):

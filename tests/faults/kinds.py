@@ -124,7 +124,7 @@ def stranger_samples(product):
                                       str(forever_s)], product.environment, product.errors)
 
     def take():
-        product.strangers.update(line for _, line in stranger.take())
+        product.strangers.update(stranger.take())
         return bool(product.strangers)
 
     product.run_until(take, START_LIMIT_S)

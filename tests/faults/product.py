@@ -14,17 +14,18 @@ import time
 import tomllib
 
 import judge
+import records as r
 
 DDS_DOMAIN = 79
 STATE_SIZE, LOGS_SIZE = "256k", "16m"  # of the file systems that faults fill
 STATE_WRITING_PERIOD_S = 1.0  # of the alignment memory, so that kills hit its writing
 DRIVE_S = 37  # period of the speed of the shipped drive: the loop has no step of speed
-EVENT = re.compile(r"^[\d.]+ (spawned|ready|exited|hung|given up|start failed|domain restart|domain ready|stopped) "
+EVENT = re.compile(r"^([\d.]+) (spawned|ready|exited|hung|given up|start failed|domain restart|domain ready|stopped) "
                    r"(\S+) (\d+) ?(.*)$")
 
 
 class Output:
-    """A process with the lines of its standard output, read by a thread: (time in ns, line)."""
+    """A process with the lines of its standard output, read by a thread."""
 
     def __init__(self, command, environment, errors):
         self.lines = []
@@ -36,7 +37,7 @@ class Output:
     def _read(self):
         for line in self.process.stdout:
             with self._lock:
-                self.lines.append((time.monotonic_ns(), line.rstrip("\n")))
+                self.lines.append(line.rstrip("\n"))
 
     def take(self):
         with self._lock:
@@ -142,7 +143,7 @@ class Product:
         self.note("detached")
 
     def _take_records(self, observer):
-        for at_ns, line in observer.take():
+        for line in observer.take():
             try:
                 record = json.loads(line)
                 record["at_ns"], record["topic"]
@@ -151,12 +152,12 @@ class Product:
             self.records.append(record)
 
     def _take_events(self):
-        for at_ns, line in self.supervisor.take():
+        for line in self.supervisor.take():
             found = EVENT.match(line)
             if not found:
                 continue
-            what, process, pid, detail = found[1], found[2], int(found[3]), found[4]
-            self.events.append((at_ns, what, process, pid, detail))
+            what, process, pid, detail = found[2], found[3], int(found[4]), found[5]
+            self.events.append((int(float(found[1]) * r.SECOND_NS), what, process, pid, detail))
             if what == "spawned":
                 self.pids[process] = pid
             elif what == "exited" and self.pids.get(process) == pid:

@@ -1,7 +1,7 @@
 """Records of the observers as the judge reads them. Pure: lists of dictionaries in, intervals and gaps out.
 
-A record has `at_ns` (CLOCK_MONOTONIC), `topic`, and the fields that the observers print. The campaign itself adds
-`attached` and `detached` of the observer in shared memory, and `input` with `delivering` 0 or 1."""
+A record has `at_ns` (CLOCK_MONOTONIC), `topic`, and the fields that the observers print. The observer in shared memory
+prints `attached` when it begins; the campaign adds `detached` when it ends it."""
 
 SECOND_NS = 1_000_000_000
 

@@ -61,6 +61,7 @@ int observe() {
                     estimate.alignment_yaw_rad, std::sqrt(estimate.covariance[kYawVariance])));
   });
   node.on<HealthReport>([](const HealthReport& report) { print(text_of(report)); });
+  print(fmt::format("{{\"at_ns\":{},\"topic\":\"attached\"}}\n", runtime::monotonic_now_ns()));
   return node.spin();
 }
 
