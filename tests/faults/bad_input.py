@@ -54,13 +54,18 @@ def _as_one_packet(packet):
     return packet
 
 
-def damaged(capture, damage, sender):
-    """The capture with `damage` (damaged, empty, frozen) in the lists of the radar at the IPv4 address `sender`."""
+def damaged(capture, damage, sender, duration_s):
+    """The capture with `damage` (damaged, empty, frozen) in the lists of the radar at the IPv4 address `sender`, its first
+    `duration_s` only."""
     rng = random.Random(1)
     address = bytes(int(part) for part in sender.split("."))
-    first_list = None
+    first_list = first_s = None
     made = [capture[:FILE_HEADER]]
     for header, packet in datagrams(capture):
+        stamp_s = struct.unpack_from("<I", header)[0]
+        first_s = stamp_s if first_s is None else first_s
+        if stamp_s > first_s + duration_s:
+            break
         is_list = len(packet) - HEADERS == LIST_BYTES and packet[ETHERNET + 12:ETHERNET + 16] == address
         if is_list and damage == "damaged":
             for _ in range(rng.randint(1, 50)):

@@ -129,6 +129,9 @@ class Campaign:
             yield f"the DDS observer ended: {self.product.dds_observer.process.returncode}"
 
     def run_fault(self, fault):
+        for injection in fault.injections:
+            if injection.kind in kinds.PREPARATIONS:
+                kinds.PREPARATIONS[injection.kind](self.product, **injection.arguments)
         self.product.run_for(fault.pause_s)
         self._take()
         load = Load()

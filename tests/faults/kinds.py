@@ -17,6 +17,7 @@ import product as product_module
 import state
 
 START_LIMIT_S = 10.0
+BAD_INPUT_S = 10.0  # longer than the fault lasts
 WRITE_WAIT_S = 1.5  # longer than the writing period of the alignment memory
 
 
@@ -157,15 +158,22 @@ def _play(product, recording):
     product.is_input_held = False
 
 
-def bad_input_(product, damage, radar):
-    whole = product.drive / "radars.pcap"
-    recording = product.folder / f"{damage}_{radar}.pcap"
+def _bad_recording(product, damage, radar):
+    return product.folder / f"{damage}_{radar}.pcap"
+
+
+def prepare_bad_input(product, damage, radar):
+    recording = _bad_recording(product, damage, radar)
     if not recording.exists():
-        recording.write_bytes(bad_input.damaged(whole.read_bytes(), damage, product.senders[radar]))
-    _play(product, recording)
+        whole = (product.drive / "radars.pcap").read_bytes()
+        recording.write_bytes(bad_input.damaged(whole, damage, product.senders[radar], BAD_INPUT_S))
+
+
+def bad_input_(product, damage, radar):
+    _play(product, _bad_recording(product, damage, radar))
 
     def end():
-        _play(product, whole)
+        _play(product, product.drive / "radars.pcap")
         return []
     # A few wrong bits in a list may leave it of use; empty and frozen lists are of none.
     return Lasting(end, useless_radar=0 if damage == "damaged" else radar)
@@ -266,3 +274,5 @@ def broken_configuration(product, service, damage):
 
 
 FUNCTIONS = {name: globals()[name] for name in plan.KINDS if name != "bad_input"} | {"bad_input": bad_input_}
+# What takes long and is done before the fault begins.
+PREPARATIONS = {"bad_input": prepare_bad_input}
