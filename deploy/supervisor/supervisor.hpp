@@ -51,10 +51,12 @@ struct DomainConfig {
   /// From the start of a service to READY while the domain runs; see ProcessSpec::is_on_data_path.
   std::int64_t service_ready_timeout_ns = 3'000'000'000;
   std::int64_t first_start_timeout_ns =
-      20'000'000'000;                                ///< the same while the domain starts: many processes, cold files
-  std::int64_t watchdog_timeout_ns = 2'000'000'000;  ///< as WatchdogSec= of the units: twenty missed strokes
-  std::int64_t abort_timeout_ns = 300'000'000;       ///< from SIGABRT to SIGKILL of a process that hangs
-  std::int64_t stop_timeout_ns = 2'000'000'000;      ///< from SIGTERM to SIGKILL
+      20'000'000'000;  ///< the same while the domain starts: many processes, cold files
+  /// As WatchdogSec= of the units: ten missed strokes. A service that was stopped is back within two seconds.
+  std::int64_t watchdog_timeout_ns = 1'000'000'000;
+  std::int64_t roudi_watchdog_timeout_ns = 2'000'000'000;  ///< the same of RouDi, whose wrapper ends it earlier
+  std::int64_t abort_timeout_ns = 300'000'000;             ///< from SIGABRT to SIGKILL of a process that hangs
+  std::int64_t stop_timeout_ns = 2'000'000'000;            ///< from SIGTERM to SIGKILL
   /// The same for the services of a domain whose RouDi is gone. A healthy service ends in a quarter of it; one that
   /// hangs in the old domain must not delay the new one.
   std::int64_t dead_domain_timeout_ns = 200'000'000;

@@ -106,7 +106,7 @@ void Supervisor::forgive_delay_of_own() {
 Verdict Supervisor::verdict_on_child(const Child& child) const {
   return verdict_on({.is_ready = child.ready, .started_ns = child.started_ns, .last_stroke_ns = child.last_stroke_ns},
                     domain_ready_ ? config_.service_ready_timeout_ns : config_.first_start_timeout_ns,
-                    config_.watchdog_timeout_ns, now_ns());
+                    &child == &roudi_ ? config_.roudi_watchdog_timeout_ns : config_.watchdog_timeout_ns, now_ns());
 }
 
 void Supervisor::watch_services() {
