@@ -111,13 +111,16 @@ class Campaign:
 
     def _crashes(self):
         """Processes that ended by themselves: by a signal that neither the campaign nor the supervisor's watchdog sent,
-        or with an exit code that is neither 0 nor a refused configuration."""
+        or with an exit code that is neither 0 nor a refused configuration. Also those that the watchdog ended without
+        a reason."""
         events = self.product.events[self.events_seen:]
         self.events_seen = len(self.product.events)
         hung = {pid for _, what, _, pid, _ in self.product.events if what == "hung"}
         ends_with_domain = any(what == "domain restart" or process == "roudi" and what == "exited"
                                for _, what, process, _, _ in events)
         for _, what, process, pid, detail in events:
+            if what == "hung" and pid not in self.product.signalled and not ends_with_domain:
+                yield f"{process} was ended although nothing had stopped it: {detail}"
             if what != "exited" or pid in self.product.signalled or pid in hung:
                 continue
             by_fatal_signal = any(f"signal {number} " in detail for number in (4, 6, 7, 8, 11))
