@@ -54,7 +54,7 @@ class Campaign:
         self.file = (options.out / "faults.jsonl").open("w")
 
     def _take(self):
-        self.records += self.product.take_records()
+        self.records = r.of_live_domains(self.records + self.product.take_records())
 
     def wait_until_good(self, limit_s):
         """Time since the call after which everything was good, for SETTLED_S and by records of that time; None after

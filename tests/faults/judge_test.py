@@ -72,6 +72,13 @@ class FalseVerdicts(unittest.TestCase):
         detached = [{"at_ns": int(4.01 * S), "topic": "detached"}, {"at_ns": int(6 * S), "topic": "attached"}]
         self.assertEqual(verdicts(ordered(flow(0, 4), flow(6, 10), samples, detached))["available_silent"], 0.0)
 
+    def test_what_is_read_in_a_dead_domain_is_no_sign_of_silence(self):
+        detached = [{"at_ns": int(4.01 * S), "topic": "detached"}, {"at_ns": int(6 * S), "topic": "attached"}]
+        late = [*flow(4.02, 4.2), report(4.1, GOOD), sample(5.5, 1, r.AVAILABLE, r.NORMAL)]
+        records = r.of_live_domains([*ordered(flow(0, 4), flow(6, 10), late), *detached])
+        self.assertEqual(verdicts(records)["available_silent"], 0.0)
+        self.assertEqual([x["topic"] for x in records if 4.01 * S < x["at_ns"] < 6 * S], ["dds_sensor"])
+
     def test_a_sample_that_was_sent_before_the_silence_is_not_false(self):
         samples = [sample(3.9, 1, r.AVAILABLE, r.NORMAL), sample(4.9, 1, r.AVAILABLE, r.NORMAL),
                    sample(5.4, 1, r.NOT_AVAILABLE, 2)]

@@ -131,16 +131,13 @@ class Product:
         self.input = Output([self.bin / "boresight-replay", "--loop", "100000", self.recording,
                              self.drive / "ego.candump.log"], self.environment, self.errors)
 
-    def note(self, topic):
-        self.records.append({"at_ns": time.monotonic_ns(), "topic": topic})
-
-    def _stop_bus_observer(self):
+    def _stop_bus_observer(self, at_ns):
+        """The domain of the observer ended at `at_ns`."""
         if self.bus_observer:
-            self._take_records(self.bus_observer)
             self.bus_observer.end(signal.SIGKILL)
             self._take_records(self.bus_observer)
             self.bus_observer = None
-        self.note("detached")
+        self.records.append({"at_ns": at_ns, "topic": "detached"})
 
     def _take_records(self, observer):
         for line in observer.take():
@@ -157,13 +154,14 @@ class Product:
             if not found:
                 continue
             what, process, pid, detail = found[2], found[3], int(found[4]), found[5]
-            self.events.append((int(float(found[1]) * r.SECOND_NS), what, process, pid, detail))
+            at_ns = int(float(found[1]) * r.SECOND_NS)
+            self.events.append((at_ns, what, process, pid, detail))
             if what == "spawned":
                 self.pids[process] = pid
             elif what == "exited" and self.pids.get(process) == pid:
                 del self.pids[process]
             if process == "roudi" and what in ("spawned", "ready", "exited", "hung") or what == "domain restart":
-                self._stop_bus_observer()
+                self._stop_bus_observer(at_ns)
             if process == "roudi" and what == "ready":
                 self.bus_observer = Output([self.bin / "faults" / "bus_observer"], self.environment, self.errors)
 
@@ -191,8 +189,9 @@ class Product:
 
     def take_records(self):
         self.poll()
+        """In the order of arrival; a `detached` comes late."""
         taken, self.records = self.records, []
-        return sorted(taken, key=lambda record: record["at_ns"])
+        return taken
 
     # What faults do
 
@@ -252,7 +251,7 @@ class Product:
             time.sleep(0.002)
         self._take_events()
         self.pids.clear()
-        self._stop_bus_observer()
+        self._stop_bus_observer(time.monotonic_ns())
 
     def stop(self):
         """Exit code of the supervisor."""

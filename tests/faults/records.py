@@ -15,6 +15,19 @@ def of(records, *topics):
     return [record for record in records if record["topic"] in topics]
 
 
+def of_live_domains(records):
+    """In the order of time, without what the observer in shared memory read between `detached` and `attached`: no user
+    of the product sees what a process writes there into the memory of a dead domain."""
+    kept, is_attached = [], True
+    for record in sorted(records, key=lambda record: record["at_ns"]):
+        if record["topic"] in ("attached", "detached"):
+            is_attached = record["topic"] == "attached"
+        elif not is_attached and not record["topic"].startswith("dds_"):
+            continue
+        kept.append(record)
+    return kept
+
+
 def valid_until(reports, validity_ns):
     """(report, begin, end) of each: it holds until the next one comes, but no longer than its validity."""
     for report, after in zip(reports, [*reports[1:], None]):
