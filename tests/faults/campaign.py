@@ -206,7 +206,8 @@ class Campaign:
             if not result["recovered"] and not self.restart():
                 print("not even a restart helps: the campaign ends here", flush=True)
                 break
-        text = report.text(self.results, self.bars, self.options.seed, (load.busy_cores(), os.cpu_count()))
+        text = report.text(self.results, self.bars, self.options.seed,
+                           (load.busy_cores(), os.cpu_count(), os.getloadavg()[1]))
         (self.options.out / "report.txt").write_text(text + "\n")
         print("\n" + text, flush=True)
         exit_code = self.product.stop()

@@ -30,8 +30,8 @@ def upper_bound(failures, count):
 def _row(name, results):
     outages = [result["outage_s"] for result in results]
     restored = [result["recovered_after_s"] for result in results if result["recovered"]]
-    return (f"{name:<24}{len(results):>6}{sum(not result['recovered'] for result in results):>7}"
-            f"{percentile(outages, 0.5):>9.2f}{percentile(outages, 0.99):>8.2f}{max(outages):>8.2f}"
+    return (f"{name:<24}{len(results):>6}{sum(not result['recovered'] for result in results):>9}"
+            f"{percentile(outages, 0.5):>8.2f}{percentile(outages, 0.99):>8.2f}{max(outages):>8.2f}"
             f"{percentile(restored, 0.5):>10.2f}{percentile(restored, 0.99):>8.2f}")
 
 
@@ -42,7 +42,8 @@ def _is_data_path_kill(result):
 
 def _of_time(name, values, limit_s):
     p99 = percentile(values, 0.99)
-    return {"bar": name, "count": len(values), "value": f"{p99:.2f} s", "limit": f"{limit_s:g} s",
+    return {"bar": name, "count": len(values), "value": f"{p99:.2f} s" if values else "no fault",
+            "limit": f"{limit_s:g} s",
             "passed": not values or p99 <= limit_s}
 
 
@@ -93,10 +94,11 @@ def failures(results, bars):
 
 
 def text(results, bars, seed, load):
-    """`load`: busy cores on average, and cores."""
-    lines = [f"campaign of seed {seed}: {len(results)} faults; load {load[0]:.2f} busy cores of {load[1]}", "",
-             f"{'':<24}{'':>6}{'not re-':>7}{'outage, s':>25}{'verdict restored, s':>18}".rstrip(),
-             f"{'fault':<24}{'count':>6}{'covered':>8}{'median':>8}{'p99':>8}{'max':>8}{'median':>10}{'p99':>8}"]
+    """`load`: busy cores on average, cores, and the load average of the last five minutes."""
+    lines = [f"campaign of seed {seed}: {len(results)} faults; {load[0]:.2f} busy cores of {load[1]}, "
+             f"load average {load[2]:.1f}", "",
+             f"{'':<24}{'':>6}{'not':>9}{'outage, s':>24}{'recovered, s':>18}",
+             f"{'fault':<24}{'count':>6}{'recov.':>9}{'median':>8}{'p99':>8}{'max':>8}{'median':>10}{'p99':>8}"]
     for group in sorted({result["group"] for result in results}):
         lines.append(_row(group, [result for result in results if result["group"] == group]))
     lines += [_row("all", results), ""]

@@ -46,7 +46,7 @@ class Bars(unittest.TestCase):
                              ({"findings": ["crash"]}, "crashes, other findings")):
             results = [result(0), result(1, **changes)]
             self.assertEqual(missed(results), [bar])
-            self.assertIn("--seed 5 --only 1", report.text(results, BARS, 5, (1.0, 2)))
+            self.assertIn("--seed 5 --only 1", report.text(results, BARS, 5, (1.0, 2, 1.5)))
 
     def test_a_data_path_kill_has_a_shorter_limit(self):
         self.assertEqual(missed([result(outage_s=1.5)]), ["outage p99, data-path kill"])
