@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import random
+import shutil
 import sys
 import time
 
@@ -157,6 +158,7 @@ class Campaign:
             "outage_s": judge.outage_s(self.records, window),
             "false_s": judge.false_verdicts(self.records, self.truth, verdicts, self.bars, self.product.strangers),
             "lost_states": lost, "findings": findings + list(self._crashes()),
+            "yaw_rad": judge.last_estimates(self.records),
             "state": "" if good_after_s is not None else self._state(),
         }
         self.results.append(result)
@@ -239,6 +241,8 @@ def options_of(arguments):
 def main():
     options = options_of(sys.argv[1:])
     options.out.mkdir(parents=True, exist_ok=True)
+    for folder in options.out.glob("fault_*"):  # of an earlier campaign
+        shutil.rmtree(folder)
     FOLDER.mkdir()
     campaign = Campaign(options)
     print(f"seed {options.seed}; misaligned {campaign.truth.misaligned}; results in {options.out}", flush=True)

@@ -13,7 +13,7 @@ class Bars:
     sample_validity_s: float = 2.0  # of a sample on DDS: two of its periods
     detection_s: float = 0.5  # from the last scan or track list to the verdict: README of health, Pipeline
     bad_input_s: float = 5.0  # from the begin of useless input to the verdict: the issue's 2 to 5 s
-    yaw_error_rad: float = 0.0087  # 0.5°; a larger error of the restored mounting is a lost memory (choice)
+    yaw_error_rad: float = 0.0131  # 0.75°, half of the tolerance: an estimate farther from the truth is lost (choice)
     recovery_s: float = 30.0  # choice: the longest delay between two starts is 5 s
     outage_p99_s: float = 2.0
     data_path_kill_p99_s: float = 1.0
@@ -22,12 +22,16 @@ class Bars:
 
 @dataclasses.dataclass(frozen=True)
 class Truth:
-    misaligned: dict  # radar: yaw in rad, of those beyond their tolerance
-    well_mounted: tuple
+    yaw_rad: dict  # of every radar: actual minus nominal
+    misaligned: tuple  # radars beyond their tolerance
 
     @property
     def radars(self):
-        return sorted([*self.misaligned, *self.well_mounted])
+        return sorted(self.yaw_rad)
+
+    @property
+    def well_mounted(self):
+        return [radar for radar in self.radars if radar not in self.misaligned]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,10 +114,15 @@ def outage_s(records, window):
 
 
 def lost_alignment(records, truth, window, bars):
-    """Radars whose restored estimate is not the one that was stored."""
+    """Radars with an estimate that is not the stored one."""
     return sorted({e["radar"] for e in r.of(records, "alignment_estimate")
-                   if window.begin_ns < e["at_ns"] <= window.end_ns and e["radar"] in truth.misaligned
-                   and abs(e["yaw_rad"] - truth.misaligned[e["radar"]]) > bars.yaw_error_rad})
+                   if window.begin_ns < e["at_ns"] <= window.end_ns
+                   and abs(e["yaw_rad"] - truth.yaw_rad[e["radar"]]) > bars.yaw_error_rad})
+
+
+def last_estimates(records):
+    """Yaw and its standard deviation of each radar, rad."""
+    return {e["radar"]: (e["yaw_rad"], e["yaw_std_rad"]) for e in r.of(records, "alignment_estimate")}
 
 
 def is_good(records, truth, now_ns, not_before_ns=0, within_s=0.4):

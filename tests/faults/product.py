@@ -105,13 +105,13 @@ class Product:
                          for row in csv.DictReader(file) if row["quantity"].startswith("alignment_")}
         radars = tomllib.loads(self.vehicle.read_text())["radar"]
         self.senders = {radar["id"]: radar["source"]["sender"] for radar in radars}
-        misaligned = {}
+        misaligned = []
         for radar in radars:
             for axis in ("yaw", "pitch", "roll"):
                 error_rad = angle_rad.get((f"alignment_{axis}", radar["id"]), 0.0)
                 if abs(error_rad) > radar["tolerance"][f"{axis}_deg"] * 0.017453292519943295:
-                    misaligned[radar["id"]] = angle_rad[("alignment_yaw", radar["id"])]
-        return judge.Truth(misaligned, tuple(x["id"] for x in radars if x["id"] not in misaligned))
+                    misaligned.append(radar["id"])
+        return judge.Truth({radar["id"]: angle_rad[("alignment_yaw", radar["id"])] for radar in radars}, tuple(misaligned))
 
     # Processes
 
