@@ -189,16 +189,25 @@ class Campaign:
             (folder / log.name).write_bytes(log.read_bytes()[-20_000:])
 
     def restart(self):
-        """After a fault that was not recovered from: as an operator who restarts everything. True if that helped."""
-        self.product.cut_power()
-        for path in pathlib.Path("/dev/shm").iterdir():
-            path.unlink()
-        self.product.start_supervisor()
-        is_good = self.wait_until_good(BASELINE_LIMIT_S) is not None
-        self.judged_until_ns = time.monotonic_ns()
+        """After a fault that was not recovered from: as an operator who restarts everything, and who deletes the stored
+        states if that does not help. True if one of the two helped."""
+        for is_last in (False, True):
+            self.product.cut_power()
+            for path in pathlib.Path("/dev/shm").iterdir():
+                path.unlink()
+            if is_last:
+                for path in self.product.state.iterdir():
+                    path.unlink()
+            self.product.start_supervisor()
+            if self.wait_until_good(BASELINE_LIMIT_S if is_last else self.bars.recovery_s) is not None:
+                break
+        else:
+            return False
+        self.product.run_until(lambda: not state.losses(self.product), BASELINE_LIMIT_S)
         self.records = []
+        self.judged_until_ns = time.monotonic_ns()
         list(self._crashes())
-        return is_good
+        return True
 
     def run(self, numbers):
         load = Load()
@@ -206,7 +215,7 @@ class Campaign:
         for number in numbers:
             result = self.run_fault(plan.draw(self.options.seed, number, chosen))
             if not result["recovered"] and not self.restart():
-                print("not even a restart helps: the campaign ends here", flush=True)
+                print("neither a restart nor deleting the stored states helps: the campaign ends here", flush=True)
                 break
         text = report.text(self.results, self.bars, self.options.seed,
                            (load.busy_cores(), os.cpu_count(), os.getloadavg()[1]))
