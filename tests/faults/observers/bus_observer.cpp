@@ -45,13 +45,14 @@ std::string text_of(const HealthReport& report) {
 int observe() {
   runtime::log::initialise("observer");
   runtime::Node node(catalogue::Service::kMonitor, "-faults" + std::to_string(getpid()));
+  // At the time of publication: on a busy machine the observer itself may be late.
   node.on<RadarScan>([](const RadarScan& scan) {
-    print(fmt::format("{{\"at_ns\":{},\"topic\":\"radar_scan\",\"radar\":{}}}\n", runtime::monotonic_now_ns(),
-                      scan.header.source_id));
+    print(fmt::format("{{\"at_ns\":{},\"topic\":\"radar_scan\",\"radar\":{}}}\n",
+                      scan.header.stage(Stage::kIngest).end_ns, scan.header.source_id));
   });
   node.on<TrackList>([](const TrackList& list) {
-    print(fmt::format("{{\"at_ns\":{},\"topic\":\"track_list\",\"radar\":{}}}\n", runtime::monotonic_now_ns(),
-                      list.header.source_id));
+    print(fmt::format("{{\"at_ns\":{},\"topic\":\"track_list\",\"radar\":{}}}\n",
+                      list.header.stage(Stage::kTracker).end_ns, list.header.source_id));
   });
   node.on<AlignmentEstimate>([](const AlignmentEstimate& estimate) {
     print(
