@@ -52,6 +52,7 @@ class Campaign:
         self.results = []
         self.judged_until_ns = time.monotonic_ns()
         self.events_seen = 0
+        self.lost_radars = []
         self.file = (options.out / "faults.jsonl").open("w")
 
     def _take(self):
@@ -149,7 +150,9 @@ class Campaign:
         verdicts = judge.Window(self.judged_until_ns, end_ns, tuple(excused), tuple(useless))
         self.judged_until_ns = end_ns
         lost = state.losses(self.product)
-        lost += [f"alignment of radar {radar}" for radar in judge.lost_alignment(self.records, self.truth, window, self.bars)]
+        lost_radars = judge.lost_alignment(self.records, self.truth, window, self.bars)
+        lost += [f"alignment of radar {radar}" for radar in lost_radars if radar not in self.lost_radars]  # each loss once
+        self.lost_radars = lost_radars
         result = {
             "seed": self.options.seed, "number": fault.number, "group": fault.group(), "text": fault.text(),
             "injections": [vars(injection) for injection in fault.injections],
