@@ -36,6 +36,9 @@ std::string text_of(const HealthReport& report) {
     text += fmt::format("{}[{},{},{}]", i == 0 ? "" : ",", sensor.radar_id, static_cast<int>(sensor.data_qualifier),
                         static_cast<int>(sensor.extended_qualifier));
   }
+  text += R"(],"failed_events":[)";  // RadarEvent bits: which axis, for those who look into a finding
+  for (std::size_t i = 0; i < report.number_of_sensors && i < kMaxRadars; ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : ",", report.sensors[i].failed_events);
   text += R"(],"services":[)";
   for (std::size_t i = 0; i < report.number_of_services && i < kMaxServices; ++i)
     text += fmt::format("{}{}", i == 0 ? "" : ",", static_cast<int>(report.services[i].condition));
