@@ -113,7 +113,7 @@ void Supervisor::start_roudi(const std::function<bool()>& cancelled) {
 void Supervisor::start_child(Child& child) {
   Command command = child.spec.command;
   command.environment.emplace_back("NOTIFY_SOCKET", (config_.run_directory / "notify").string());
-  command.environment.emplace_back("WATCHDOG_USEC", std::to_string(config_.watchdog_timeout_ns / 1000));
+  command.environment.emplace_back("WATCHDOG_USEC", std::to_string(watchdog_timeout_of(child) / 1000));
   child.ready = false;
   child.kill_at_ns = 0;
   child.wait_status.reset();

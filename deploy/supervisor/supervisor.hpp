@@ -51,10 +51,15 @@ struct DomainConfig {
   /// From the start of a service to READY while the domain runs; see ProcessSpec::is_on_data_path.
   std::int64_t service_ready_timeout_ns = 3'000'000'000;
   std::int64_t first_start_timeout_ns =
-      20'000'000'000;                                ///< the same while the domain starts: many processes, cold files
-  std::int64_t watchdog_timeout_ns = 2'000'000'000;  ///< as WatchdogSec= of the units: twenty missed strokes
-  std::int64_t abort_timeout_ns = 300'000'000;       ///< from SIGABRT to SIGKILL of a process that hangs
-  std::int64_t stop_timeout_ns = 2'000'000'000;      ///< from SIGTERM to SIGKILL
+      20'000'000'000;  ///< the same while the domain starts: many processes, cold files
+  /// As WatchdogSec= of the units on the data path: ten missed strokes. One that was stopped is back within two
+  /// seconds.
+  std::int64_t watchdog_timeout_ns = 1'000'000'000;
+  /// The same of RouDi, whose wrapper ends it earlier, and of services off the data path. Health joins the DDS domain
+  /// after its start, which takes a second on a busy machine.
+  std::int64_t off_path_watchdog_timeout_ns = 2'000'000'000;
+  std::int64_t abort_timeout_ns = 300'000'000;   ///< from SIGABRT to SIGKILL of a process that hangs
+  std::int64_t stop_timeout_ns = 2'000'000'000;  ///< from SIGTERM to SIGKILL
   /// The same for the services of a domain whose RouDi is gone. A healthy service ends in a quarter of it; one that
   /// hangs in the old domain must not delay the new one.
   std::int64_t dead_domain_timeout_ns = 200'000'000;
@@ -154,6 +159,7 @@ class Supervisor {
   void respawn();
   [[nodiscard]] std::optional<std::string> reason_to_restart() const;
   [[nodiscard]] Verdict verdict_on_child(const Child& child) const;
+  [[nodiscard]] std::int64_t watchdog_timeout_of(const Child& child) const;
   void terminate(const std::vector<Child*>& children, std::int64_t timeout_ns);
   void remove_leftovers();
   [[nodiscard]] std::vector<std::string> runtime_names() const;

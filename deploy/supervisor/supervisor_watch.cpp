@@ -105,7 +105,12 @@ void Supervisor::forgive_delay_of_own() {
 Verdict Supervisor::verdict_on_child(const Child& child) const {
   return verdict_on({.is_ready = child.ready, .started_ns = child.started_ns, .last_stroke_ns = child.last_stroke_ns},
                     domain_ready_ ? config_.service_ready_timeout_ns : config_.first_start_timeout_ns,
-                    config_.watchdog_timeout_ns, now_ns());
+                    watchdog_timeout_of(child), now_ns());
+}
+
+std::int64_t Supervisor::watchdog_timeout_of(const Child& child) const {
+  const bool is_on_data_path = &child != &roudi_ && child.spec.is_on_data_path;
+  return is_on_data_path ? config_.watchdog_timeout_ns : config_.off_path_watchdog_timeout_ns;
 }
 
 void Supervisor::watch_services() {

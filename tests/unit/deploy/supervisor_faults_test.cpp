@@ -53,7 +53,7 @@ TEST_F(SupervisorFaults, StrokesAreNotMissedWhileTheSupervisorSleeps) {
 
 TEST_F(SupervisorFaults, RoudiWithoutStrokesRestartsTheDomain) {
   DomainConfig config = domain({service("a")}, "mute_once");
-  config.watchdog_timeout_ns = 300'000'000;
+  config.off_path_watchdog_timeout_ns = 300'000'000;
   Supervisor supervisor(config);
   supervisor.start();
   ASSERT_TRUE(poll_until(supervisor, [&] { return supervisor.domain_restarts() == 1 && supervisor.all_ready(); }));
