@@ -1,6 +1,7 @@
 #include "services/health/outlet.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <iterator>
 
@@ -53,10 +54,10 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
   if (!config_.enabled || (!at_once && now_ns < next_ns_)) return;
   next_ns_ = now_ns + static_cast<std::int64_t>(config_.period_s * 1e9);
   std::string problem = look_at_interfaces();
-  if (!channel_ && !used_addresses_.empty()) {
-    const std::string reason = now_ns >= retry_ns_ ? open(now_ns) : problem_;
-    if (problem.empty()) problem = reason;
-  }
+  const bool may_join = !channel_ && !joining_.valid() && !used_addresses_.empty();
+  if (may_join && now_ns >= retry_ns_) begin_to_join();
+  if (!channel_ && problem.empty()) problem = obstacle_;
+  if (!channel_ && problem.empty()) return;  // not known yet
   if (channel_) {
     const dds::Now now = moment(now_ns);
     const bool are_services_taken = channel_->topics.write(report, now);
@@ -68,6 +69,7 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
 }
 
 void Outlet::serve(std::int64_t now_ns) {
+  end_joining(now_ns);
   if (!channel_) return;
   for (const std::string& event : channel_->faults.serve(now_ns)) {
     runtime::log::warning("{}", event);
@@ -105,7 +107,7 @@ std::string Outlet::look_at_interfaces() {
     channel_.reset();
     retry_ns_ = 0;
   }
-  if (channel_) {
+  if (channel_ || joining_.valid()) {
     std::vector<std::string> kept;
     std::ranges::set_intersection(used_addresses_, usable.addresses, std::back_inserter(kept));
     used_addresses_ = std::move(kept);
@@ -115,17 +117,28 @@ std::string Outlet::look_at_interfaces() {
   return dds::joined(usable.problems);
 }
 
-std::string Outlet::open(std::int64_t now_ns) {
+void Outlet::begin_to_join() {
+  joining_ = std::async(std::launch::async, [this] {
+    auto participant = std::make_unique<dds::Participant>(config_, "boresight-health");
+    return Joined{std::move(participant), dds::check_security(config_.security, config_.domain, now_s()).valid_until_s};
+  });
+}
+
+void Outlet::end_joining(std::int64_t now_ns) {
+  if (!joining_.valid() || joining_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  next_ns_ = 0;  // the result is reported at once
   try {
-    channel_.emplace(config_, vehicle_, faults_, key_);
-    valid_until_s_ = dds::check_security(config_.security, config_.domain, now_s()).valid_until_s;
-    if (problem_.empty())
+    Joined joined = joining_.get();
+    valid_until_s_ = joined.valid_until_s;
+    channel_.emplace(std::move(joined.participant), config_, vehicle_, faults_, key_);
+    obstacle_.clear();
+    if (problem_.empty()) {
       runtime::log::info("diagnostics are sent on DDS domain {}{}", config_.domain,
                          config_.security.enabled ? ", secured" : "");
-    return {};
+    }
   } catch (const std::exception& error) {
     retry_ns_ = now_ns + kRetryPeriod_ns;
-    return error.what();
+    obstacle_ = error.what();
   }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,12 +46,13 @@ class Outlet {
  private:
   /// Everything that exists only with a participant.
   struct Channel {
-    Channel(const dds::Config& config, const VehicleConfig& vehicle, FaultMemory& faults, const dds::CommandKey& key)
-        : participant(config, "boresight-health"),
-          reports(participant, vehicle),
-          topics(participant, config, vehicle),
-          faults(participant, vehicle, faults, key) {}
-    dds::Participant participant;  // first member: it outlives its writers
+    Channel(std::unique_ptr<dds::Participant> joined, const dds::Config& config, const VehicleConfig& vehicle,
+            FaultMemory& faults, const dds::CommandKey& key)
+        : participant(std::move(joined)),
+          reports(*participant, vehicle),
+          topics(*participant, config, vehicle),
+          faults(*participant, vehicle, faults, key) {}
+    std::unique_ptr<dds::Participant> participant;  // first member: it outlives its writers
     dds::DiagnosticsWriter reports;
     dds::TopicPublisher topics;
     dds::FaultMemoryServer faults;
@@ -60,8 +63,16 @@ class Outlet {
   /// Compares the interfaces with those of the participant; leaves the domain if it must be joined anew. Returns what
   /// is wrong with them.
   std::string look_at_interfaces();
-  /// Joins the domain; returns why that is impossible.
-  std::string open(std::int64_t now_ns);
+  /// A participant, and the end of the validity of its files in seconds since the epoch.
+  struct Joined {
+    std::unique_ptr<dds::Participant> participant;
+    std::int64_t valid_until_s;
+  };
+  /// Begins to join the domain, in a thread of its own: the middleware needs more than a second on a busy machine, and
+  /// supervision must not wait for it.
+  void begin_to_join();
+  /// If that has ended: makes the writers, or keeps the reason why it is impossible.
+  void end_joining(std::int64_t now_ns);
   /// Whether new readers refuse this participant, because a certificate or its permissions have expired.
   [[nodiscard]] bool has_expired() const;
   /// `problem`: why readers cannot receive; "" if they can.
@@ -73,6 +84,8 @@ class Outlet {
   FaultMemory& faults_;
   dds::CommandKey key_;
   std::optional<Channel> channel_;
+  std::future<Joined> joining_;
+  std::string obstacle_;                    ///< why the domain could not be joined; "" if it was, or not tried yet
   std::int64_t valid_until_s_ = INT64_MAX;  // since the epoch
   std::int64_t next_ns_ = 0;
   std::int64_t retry_ns_ = 0;

@@ -61,9 +61,7 @@ dds::Config config_of(const fs::path& credentials) {
 /// What a diagnosis tool gets.
 class Subscriber {
  public:
-  explicit Subscriber(const fs::path& credentials)
-      : reader_(config_of(credentials),
-                {.on_sensor_health = [this](const diagnostics::SensorHealth& sample) { take(sample); }}) {}
+  explicit Subscriber(const fs::path& credentials) : reader_(config_of(credentials), callbacks()) {}
   [[nodiscard]] std::size_t radars() {
     const std::lock_guard lock(mutex_);
     return radars_.size();
@@ -72,6 +70,11 @@ class Subscriber {
   [[nodiscard]] int forged() const { return forged_; }
 
  private:
+  dds::DiagnosticsCallbacks callbacks() {
+    dds::DiagnosticsCallbacks calls;
+    calls.on_sensor_health = [this](const diagnostics::SensorHealth& sample) { take(sample); };
+    return calls;
+  }
   void take(const diagnostics::SensorHealth& sample) {
     const std::lock_guard lock(mutex_);
     ++(sample.time_ns() == kForgedTime_ns ? forged_ : genuine_);

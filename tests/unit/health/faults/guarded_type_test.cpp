@@ -7,6 +7,7 @@
 #include "generated/fault_memoryPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
 #include "generated/system_healthPubSubTypes.h"
+#include "services/health/dds/topics.hpp"
 
 namespace boresight::dds {
 namespace {
@@ -15,8 +16,8 @@ using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 /// Damages samples at random places and reads them; returns how many were refused.
 template <typename Generated, typename Sample>
-int refused_of(const Sample& sample, int trials) {
-  GuardedType<Generated> type;
+int refused_of(const TopicQos& topic, const Sample& sample, int trials) {
+  GuardedType<Generated> type(topic.most_bytes);
   Sample written = sample;
   SerializedPayload_t good(type.getSerializedSizeProvider(&written)());
   EXPECT_TRUE(type.serialize(&written, &good));
@@ -35,11 +36,13 @@ int refused_of(const Sample& sample, int trials) {
 TEST(GuardedType, RefusesDamagedSamplesAndSurvivesThem) {
   diagnostics::SensorHealth sensor;
   sensor.radar_name("front_left");
-  EXPECT_GT((refused_of<diagnostics::SensorHealthPubSubType>(sensor, 3000)), 0);
+  EXPECT_GT((refused_of<diagnostics::SensorHealthPubSubType>(kSensorHealthTopic, sensor, 3000)), 0);
   diagnostics::SystemHealth system;
   system.services("tracker:alive");
-  EXPECT_GT((refused_of<diagnostics::SystemHealthPubSubType>(system, 3000)), 0);
-  EXPECT_GT((refused_of<diagnostics::FaultMemoryStatePubSubType>(diagnostics::FaultMemoryState(), 3000)), 0);
+  EXPECT_GT((refused_of<diagnostics::SystemHealthPubSubType>(kSystemHealthTopic, system, 3000)), 0);
+  EXPECT_GT((refused_of<diagnostics::FaultMemoryStatePubSubType>(kFaultMemoryStateTopic,
+                                                                 diagnostics::FaultMemoryState(), 3000)),
+            0);
 }
 
 }  // namespace
