@@ -1,39 +1,12 @@
-// The table of topics: consistent, usable with a request of two seconds, and as documented.
+// The table of topics: consistent, and usable with a request of two seconds.
 #include "services/health/dds/topics.hpp"
 
-#include <fstream>
-#include <iterator>
-#include <string>
-
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "services/health/dds/config.hpp"
 
 namespace boresight::dds {
 namespace {
-
-std::string periods(double number) {
-  return number > 0.0 ? fmt::format("{}", number) : std::string("none");
-}
-
-std::string row_of(const TopicQos& topic) {
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} | {} KiB |\n", topic.name,
-                     topic.durability == Durability::kTransientLocal ? "transient local" : "volatile",
-                     topic.written_depth, topic.most_instances, periods(topic.deadline_periods),
-                     periods(topic.lease_periods), periods(topic.lifespan_periods), periods(topic.requested_periods),
-                     topic.most_bytes / 1024);
-}
-
-TEST(DdsTopics, ThePageShowsTheTable) {
-  std::ifstream file(std::string(BORESIGHT_SOURCE_DIR) + "/services/health/README.md");
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
-  std::string table;
-  for (const TopicQos& topic : kTopics) table += row_of(topic);
-  EXPECT_NE(page.find("requested | largest sample |\n|---|---|---|---|---|---|---|---|---|\n" + table + "\n"),
-            std::string::npos)
-      << table;
-}
 
 TEST(DdsTopics, AReaderThatRequestsTwoSecondsMatchesThePeriodicTopics) {
   const Config config;
