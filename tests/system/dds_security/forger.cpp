@@ -70,7 +70,9 @@ int Forger::run(Counts& counts, std::uint32_t domain, const std::string& credent
   while (!counts.may_begin) harness::sleep_s(kPeriod_s);
   fast::DomainParticipantQos qos;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>());
+  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = {"127.0.0.1"};  // where the service is
+  qos.transport().user_transports.push_back(udp);
   if (!credentials.empty()) secure_without_checks(qos, credentials);
   fast::DomainParticipant* const participant =
       fast::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
