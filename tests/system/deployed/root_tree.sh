@@ -6,7 +6,7 @@
 make_root_tree() {
   local memory=$1 build=$2 root=$1/root
   mkdir -p "$memory"
-  mount -t tmpfs tmpfs "$memory"
+  mount -t tmpfs tmpfs "$memory" || return 1
   mkdir "$memory/upper" "$memory/work" "$root"
   mount -t overlay overlay -o "lowerdir=/,upperdir=$memory/upper,workdir=$memory/work" "$root" 2>/dev/null || return 1
   # A separate machine: none of the host's services, another identity.

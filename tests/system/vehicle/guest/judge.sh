@@ -1,0 +1,84 @@
+# Sourced in the guest: times with their bars, and what health publishes.
+
+# The factor of emulation in hundredths: the time of the same work here and on the host.
+factor_percent=$(
+  host=$(sed -n 's/.*boresight\.work_s=\([0-9.]*\).*/\1/p' /proc/cmdline)
+  TIMEFORMAT=%R
+  here=$({ time bash /usr/local/lib/boresight-test/work.sh; } 2>&1)
+  awk -v here="$here" -v host="$host" 'BEGIN { f = 100 * here / host; print int(f < 100 ? 100 : f) }'
+)
+emulated() { [ "$factor_percent" -ge 200 ]; }
+# A slow guest on a busy host: no time below this is judged there. In milliseconds.
+patience_ms=30000
+now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
+seconds() { printf '%d.%d' $(($1 / 1000)) $(($1 % 1000 / 100)); }
+
+# timed WHAT BAR_MS COMMAND…: waits for COMMAND and prints the time it took. The bar holds for a real machine. An emulated
+# one gets the bar times the factor of emulation, and at least the patience.
+timed() {
+  local what=$1 bar=$2 limit=$2 begin end
+  shift 2
+  if emulated; then
+    limit=$((bar * factor_percent / 100))
+    [ $limit -ge $patience_ms ] || limit=$patience_ms
+  fi
+  begin=$(now_ms)
+  until "$@"; do
+    if [ $(($(now_ms) - begin)) -ge $limit ]; then
+      echo "FAILED  $what: not within $(seconds $limit) s (bar $(seconds "$bar") s)"
+      failed=1
+      return 1
+    fi
+    sleep 0.05
+  done
+  end=$(now_ms)
+  echo "ok      $what: $(seconds $((end - begin))) s (bar $(seconds "$bar") s, judged here: $(seconds $limit) s)"
+}
+
+# --- what health publishes ------------------------------------------------------------------------------------------
+observed=/run/diagnostics.jsonl
+# latest PATTERN: the newest sample with it.
+latest() { tail -n 200 $observed 2>/dev/null | grep -- "$1" | tail -n 1; }
+stamp_ms() { [[ $1 =~ \"time_ns\":([0-9]+) ]] && echo $((BASH_REMATCH[1] / 1000000)) || echo 0; }
+# flows SINCE_MS: health reported after that time that track lists arrive for the scans of the radars.
+flows() {
+  local sample
+  sample=$(latest '"overall"')
+  [ "$(stamp_ms "$sample")" -gt "$1" ] && [[ $sample != *'"pipeline":{"data_qualifier":"NOT_AVAILABLE"'* ]]
+}
+# radar_is ID SINCE_MS TEXT: the newest report on the radar is younger than that time and contains TEXT.
+radar_is() {
+  local sample
+  sample=$(latest "\"radar_id\":$1,")
+  [ "$(stamp_ms "$sample")" -gt "$2" ] && [[ $sample == *"$3"* ]]
+}
+delivers() { radar_is "$1" "$2" '"data_qualifier":"AVAILABLE'; }
+silent() { radar_is "$1" "$2" '"extended_qualifier":"NO_DATA"'; }
+
+# --- processes ------------------------------------------------------------------------------------------------------
+# processes [BUT]: the services' names with their process ids, without that of BUT.
+processes() {
+  local service
+  for service in roudi "${services[@]}"; do [ "$service" = "${1:-}" ] || echo "$service $(pid_of "$service")"; done
+}
+# back SERVICE OLD_PID SINCE_MS: the service runs as another process, and track lists flow.
+back() { is_new "$1" "$2" && flows "$3"; }
+# domain_back OLD_PROCESSES SINCE_MS: every service runs as another process, and track lists flow.
+domain_back() {
+  local service pid
+  while read -r service pid; do is_new "$service" "$pid" || return 1; done <<< "$1"
+  flows "$2"
+}
+# codes FILE: the trouble codes that health stores, as lines of JSON.
+codes() { boresight dtc list --json --config /etc/boresight --seconds 60 > "$1" 2> "$1.txt"; }
+has_code() { grep -q "\"name\":\"$2\"" "$1"; }
+stored() { codes /run/codes.jsonl && has_code /run/codes.jsonl "$1"; }
+
+# restart_machine HOW…: leaves the verdict so far for the next boot and restarts.
+restart_machine() {
+  cp $observed "/out/diagnostics.$boot.jsonl"
+  [ $failed -eq 0 ] || touch /out/failed
+  touch "/out/reboots.$boot"
+  "$@"
+  sleep infinity
+}
