@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # initramfs.sh KERNEL_TREE VERSION BUSYBOX OUT: writes the guest's first file system to OUT. It loads the kernel modules,
-# mounts the guest's root and starts systemd. The root is the tree that the host shares by 9p, read-only, below the
-# overlay of the guest's own disk (/dev/vda), which therefore outlives a reboot. A second, small disk (/dev/vdb) holds
-# the state of the services and the journal.
+# mounts the guest's root and starts systemd. The root is an image of the host's (/dev/vda), below the overlay of a disk
+# (/dev/vdb), which therefore outlives a reboot. A small disk (/dev/vdc) holds the state of the services and the journal.
+# The host shares one folder, /out, for the results.
 set -euo pipefail
 tree=$1
 version=$2
 busybox=$3
 out=$4
-modules=(virtio_pci virtio_blk 9pnet_virtio 9p overlay ext4 vcan can_raw veth)
+modules=(virtio_pci virtio_blk 9pnet_virtio 9p squashfs overlay ext4 vcan can_raw veth)
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -31,14 +31,13 @@ $b mount -t proc proc /proc
 $b mount -t sysfs sys /sys
 $b mount -t devtmpfs dev /dev
 while read -r module; do $b insmod "/modules/$module" || $b echo "initramfs: no $module"; done < /modules/order
-share="trans=virtio,version=9p2000.L,msize=512000"
-$b mount -t 9p -o "ro,$share,cache=loose" root /lower || give_up "no root tree"
-$b mount -t ext4 /dev/vda /disk || give_up "no disk"
+$b mount -t squashfs -o ro /dev/vda /lower || give_up "no root tree"
+$b mount -t ext4 /dev/vdb /disk || give_up "no disk"
 $b mkdir -p /disk/upper /disk/work
 $b mount -t overlay -o lowerdir=/lower,upperdir=/disk/upper,workdir=/disk/work overlay /root || give_up "no overlay"
 $b mkdir -p /root/out /root/small
-$b mount -t 9p -o "$share,cache=none" out /root/out || give_up "no folder for results"
-$b mount -t ext4 /dev/vdb /root/small || give_up "no small disk"
+$b mount -t 9p -o trans=virtio,version=9p2000.L,msize=512000,cache=none out /root/out || give_up "no folder for results"
+$b mount -t ext4 /dev/vdc /root/small || give_up "no small disk"
 $b mkdir -p /root/small/state /root/small/journal /root/var/lib/boresight /root/var/log/journal
 $b mount -o bind /root/small/state /root/var/lib/boresight
 $b mount -o bind /root/small/journal /root/var/log/journal

@@ -14,7 +14,7 @@ refuse() { echo "tests/run vehicle: $*" >&2; exit 2; }
 
 if [ "${3:-}" != inside ]; then
   [ "$(id -u)" -eq 0 ] || refuse "mounting the guest's root tree needs root"
-  for tool in qemu-system-x86_64 cpio depmod modprobe mkfs.ext4 canplayer cansend; do
+  for tool in qemu-system-x86_64 mksquashfs cpio depmod modprobe mkfs.ext4 canplayer cansend; do
     PATH=$PATH:/sbin:/usr/sbin command -v "$tool" >/dev/null || refuse "$tool is not installed (deploy/packages.txt, group vehicle)"
   done
   unshare -m true 2>/dev/null || refuse "no mount namespaces here"
@@ -70,7 +70,9 @@ make_root_tree "$work/memory" "$build" || made=$?
 root=$work/memory/root
 # Services of System V scripts would start, too.
 rm -rf "$root"/etc/rc?.d/*
-install -D -m 644 -t "$root/usr/local/lib/boresight-test" "$source_dir/tests/system/deployed/checks.sh" "$here"/guest/*.sh "$here"/guest/*.py
+# systemd takes a machine with this file for a container.
+rm -f "$root/.dockerenv" "$root/var/lib/dbus/machine-id"
+install -D -m 644 -t "$root/usr/local/lib/boresight-test" "$source_dir/tests/system/deployed/checks.sh" "$here"/guest/*.sh
 install -m 644 -t "$root/etc/systemd/system" "$here"/guest/*.service
 install -D -m 644 "$here/vehicle.toml" "$root/etc/boresight/vehicle/vehicle_test.toml"
 mkdir -p "$root/var/lib/vehicle-feed" "$root/etc/systemd/system/multi-user.target.wants"
@@ -82,6 +84,15 @@ done
 TIMEFORMAT=%R
 { time bash "$here/guest/work.sh"; } 2> "$out/work_s.txt"
 
+# What the guest needs of the tree, as one image: thousands of small requests to a shared folder take minutes on a busy machine.
+# Uncompressed, as the emulated processor would have to decompress it.
+mksquashfs "$root" "$work/root.squashfs" -noappend -quiet -no-progress -no-exports -noI -noD -noF -noX -wildcards \
+  -p "dev d 755 0 0" -p "proc d 555 0 0" -p "sys d 555 0 0" -p "run d 755 0 0" -p "tmp d 1777 0 0" -p "root d 700 0 0" \
+  -p "out d 755 0 0" -p "small d 755 0 0" -p "var/log d 755 0 0" -p "var/tmp d 1777 0 0" -e \
+  '!(bin|sbin|lib|lib32|lib64|libx32|etc|usr|var)' 'usr/!(bin|sbin|lib|lib32|lib64|libx32|share|local)' \
+  'usr/lib/!(systemd|udev|sysusers.d|tmpfiles.d|sysctl.d|boresight|locale|os-release|*-linux-gnu)' \
+  'usr/share/!(boresight|dbus-1|terminfo)' 'usr/local/!(lib)' 'usr/local/lib/!(boresight-test)' \
+  'var/!(lib)' 'var/lib/!(vehicle-feed)' '... *.a' > "$out/squashfs.txt" 2>&1 || { cat "$out/squashfs.txt"; exit 1; }
 "$here/initramfs.sh" "$work/packages/$image" "$version" "$work/packages/busybox-static/bin/busybox" "$work/initramfs.cpio"
 truncate -s 0 "$work/disk.raw" "$work/small.raw"
 truncate -s 2G "$work/disk.raw"
@@ -90,8 +101,9 @@ mkfs.ext4 -q -F "$work/disk.raw"
 mkfs.ext4 -q -F "$work/small.raw"
 
 # Nothing of the machine's own start is needed but the basic system.
-masked=(getty.target systemd-logind.service systemd-udev-trigger.service systemd-udev-settle.service
-        systemd-networkd.service systemd-resolved.service systemd-timesyncd.service systemd-random-seed.service
+masked=(systemd-firstboot.service ldconfig.service systemd-hwdb-update.service systemd-journal-catalog-update.service
+        systemd-update-done.service systemd-machine-id-commit.service getty.target systemd-logind.service systemd-udev-trigger.service systemd-udev-settle.service
+        systemd-networkd.service systemd-networkd.socket systemd-resolved.service systemd-timesyncd.service systemd-random-seed.service
         systemd-binfmt.service systemd-update-utmp.service systemd-update-utmp-runlevel.service timers.target
         dev-hugepages.mount dev-mqueue.mount sys-kernel-debug.mount sys-kernel-tracing.mount systemd-pstore.service)
 append="console=ttyS0 quiet panic=-1 mitigations=off fstab=no luks=no systemd.unit=multi-user.target"
@@ -110,8 +122,7 @@ for boot in $(seq $boots); do
   # -no-reboot: QEMU ends where a real machine would reset, and is started again with the same disks.
   timeout -k 5 "$left" qemu-system-x86_64 "${accelerator[@]}" -M q35 -smp 2 -m $memory_mb -nodefaults -display none -no-reboot \
     -serial "file:$out/console.$boot.txt" -monitor none -kernel "$kernel" -initrd "$work/initramfs.cpio" \
-    -fsdev "local,id=root,path=$root,security_model=none,readonly=on,multidevs=remap" \
-    -device virtio-9p-pci,fsdev=root,mount_tag=root \
+    -drive "file=$work/root.squashfs,format=raw,if=virtio,readonly=on" \
     -fsdev "local,id=out,path=$out,security_model=none" -device virtio-9p-pci,fsdev=out,mount_tag=out \
     -drive "file=$work/disk.raw,format=raw,if=virtio,cache=unsafe" -drive "file=$work/small.raw,format=raw,if=virtio,cache=unsafe" \
     -append "$append boresight.boot=$boot" </dev/null > "$out/qemu.$boot.txt" 2>&1 || status=$?

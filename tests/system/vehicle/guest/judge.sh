@@ -73,6 +73,23 @@ domain_back() {
 codes() { boresight dtc list --json --config /etc/boresight --seconds 60 > "$1" 2> "$1.txt"; }
 has_code() { grep -q "\"name\":\"$2\"" "$1"; }
 stored() { codes /run/codes.jsonl && has_code /run/codes.jsonl "$1"; }
+# kept BEFORE AFTER: every trouble code of BEFORE is in AFTER, with as many occurrences or more, and the same first freeze
+# frame. Prints those that are not.
+facts() { sed -nE 's/.*"code":"([^"]*)".*"occurrences":([0-9]+).*"first":\{"time_ns":([0-9]+).*/\1 \2 \3/p' "$1"; }
+kept() {
+  local code occurrences first now lost=0
+  [ -n "$(facts "$1")" ] || { echo "        no trouble code before"; return 1; }
+  while read -r code occurrences first; do
+    now=$(facts "$2" | grep "^$code ")
+    read -r _ now_occurrences now_first <<< "$now"
+    if [ -z "$now" ]; then echo "        $code is lost"; lost=1
+    elif [ "$now_occurrences" -lt "$occurrences" ]; then echo "        $code: $occurrences occurrences, now $now_occurrences"; lost=1
+    elif [ "$now_first" != "$first" ]; then echo "        $code: another first freeze frame"; lost=1
+    fi
+  done < <(facts "$1")
+  echo "        $(facts "$1" | wc -l) codes before, $(facts "$2" | wc -l) after"
+  return $lost
+}
 
 # restart_machine HOW…: leaves the verdict so far for the next boot and restarts.
 restart_machine() {
