@@ -9,8 +9,9 @@ make_root_tree() {
   mount -t tmpfs tmpfs "$memory" || return 1
   mkdir "$memory/upper" "$memory/work" "$root"
   mount -t overlay overlay -o "lowerdir=/,upperdir=$memory/upper,workdir=$memory/work" "$root" 2>/dev/null || return 1
-  # A separate machine: none of the host's services, another identity.
-  echo uninitialized > "$root/etc/machine-id"
+  # A separate machine: none of the host's services, another identity. An empty file: not "uninitialized", which makes the
+  # next boot the first one, and the first boot enables every installed unit.
+  : > "$root/etc/machine-id"
   rm -rf "$root"/etc/systemd/system/*.wants
   DESTDIR=$root cmake --install "$build" --prefix /usr > "$memory/install.txt" 2>&1 || { cat "$memory/install.txt"; return 2; }
 }

@@ -101,11 +101,17 @@ mkfs.ext4 -q -F "$work/disk.raw"
 mkfs.ext4 -q -F "$work/small.raw"
 
 # Nothing of the machine's own start is needed but the basic system.
-masked=(systemd-firstboot.service ldconfig.service systemd-hwdb-update.service systemd-journal-catalog-update.service
-        systemd-update-done.service systemd-machine-id-commit.service getty.target systemd-logind.service systemd-udev-trigger.service systemd-udev-settle.service
-        systemd-networkd.service systemd-networkd.socket systemd-resolved.service systemd-timesyncd.service systemd-random-seed.service
-        systemd-binfmt.service systemd-update-utmp.service systemd-update-utmp-runlevel.service timers.target
-        dev-hugepages.mount dev-mqueue.mount sys-kernel-debug.mount sys-kernel-tracing.mount systemd-pstore.service)
+masked=(
+  getty.target timers.target systemd-firstboot.service ldconfig.service systemd-hwdb-update.service
+  systemd-journal-catalog-update.service systemd-update-done.service systemd-machine-id-commit.service
+  systemd-logind.service systemd-udevd.service systemd-udevd-kernel.socket systemd-udevd-control.socket
+  systemd-udev-trigger.service systemd-udev-settle.service systemd-networkd.service systemd-networkd.socket
+  systemd-resolved.service systemd-timesyncd.service systemd-random-seed.service systemd-network-generator.service
+  systemd-binfmt.service systemd-update-utmp.service systemd-update-utmp-runlevel.service systemd-pstore.service
+  e2scrub_reap.service dev-hugepages.mount dev-mqueue.mount sys-kernel-debug.mount sys-kernel-tracing.mount
+  proc-sys-fs-binfmt_misc.automount kmod-static-nodes.service systemd-modules-load.service
+)
+for module in configfs dm_mod drm efi_pstore fuse loop; do masked+=("modprobe@$module.service"); done
 append="console=ttyS0 quiet panic=-1 mitigations=off fstab=no luks=no systemd.unit=multi-user.target"
 append+=" systemd.show_status=0 systemd.journald.forward_to_console=0 boresight.work_s=$(tail -n 1 "$out/work_s.txt")"
 for unit in "${masked[@]}"; do append+=" systemd.mask=$unit"; done

@@ -10,6 +10,20 @@ factor_percent=$(
 emulated() { [ "$factor_percent" -ge 200 ]; }
 # A slow guest on a busy host: no time below this is judged there. In milliseconds.
 patience_ms=30000
+
+# scale_time_outs: the units' time-outs are those of a real machine; an emulated one gets each times the factor. Written to
+# the disk, so that later boots have them, too.
+scale_time_outs() {
+  emulated || return 0
+  mkdir -p /etc/systemd/system/boresight-.service.d
+  {
+    echo '[Service]'
+    echo "WatchdogSec=$((2000 * factor_percent / 100))ms"
+    echo "TimeoutStartSec=$((10000 * factor_percent / 100))ms"
+    echo "TimeoutStopSec=$((500 * factor_percent / 100))ms"
+  } > /etc/systemd/system/boresight-.service.d/50-emulated.conf
+  systemctl daemon-reload
+}
 now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
 seconds() { printf '%d.%d' $(($1 / 1000)) $(($1 % 1000 / 100)); }
 

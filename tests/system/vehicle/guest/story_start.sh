@@ -3,6 +3,7 @@ systemd-sysusers
 systemd-tmpfiles --create boresight.conf
 /lib/systemd/systemd-sysctl 50-boresight.conf
 check "the vehicle is chosen by its name" boresight vehicle use vehicle_test
+scale_time_outs
 begin_start=$(now_ms)
 systemctl enable -q --now --no-block boresight.target
 timed "every unit is active" 2000 all_active
