@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # initramfs.sh KERNEL_TREE VERSION BUSYBOX OUT: writes the guest's first file system to OUT. It loads the kernel modules,
-# mounts the guest's root and starts systemd. The root is an image of the host's (/dev/vda), below the overlay of a disk
+# mounts the guest's root and starts systemd. The root is a copy of the host's (/dev/vda), below the overlay of a disk
 # (/dev/vdb), which therefore outlives a reboot. A small disk (/dev/vdc) holds the state of the services and the journal.
 # The host shares one folder, /out, for the results.
 set -euo pipefail

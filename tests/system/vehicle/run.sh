@@ -9,6 +9,8 @@ work=$build/vehicle
 # Of all boots together. A hang ends the test, not the patience of the one who waits.
 limit_s=${BORESIGHT_VEHICLE_LIMIT_S:-3000}
 memory_mb=2048
+# canplayer repeats the drive.
+drive_s=600
 boots=3
 refuse() { echo "tests/run vehicle: $*" >&2; exit 2; }
 
@@ -38,13 +40,13 @@ unpack() {
   rm -rf "$work/download"
 }
 mkdir -p "$work/packages"
-image=$(apt-cache depends linux-image-amd64 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*\)/\1/p' | head -n 1)
-[ -n "$image" ] || { apt-get update -qq; image=$(apt-cache depends linux-image-amd64 | sed -n 's/^ *Depends: \(linux-image-[0-9].*\)/\1/p' | head -n 1); }
-[ -n "$image" ] || refuse "apt knows no linux-image-amd64"
-version=${image#linux-image-}
-unpack "$image"
+kernel_package=$(apt-cache depends linux-image-amd64 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*\)/\1/p' | head -n 1)
+[ -n "$kernel_package" ] || { apt-get update -qq; kernel_package=$(apt-cache depends linux-image-amd64 | sed -n 's/^ *Depends: \(linux-image-[0-9].*\)/\1/p' | head -n 1); }
+[ -n "$kernel_package" ] || refuse "apt knows no linux-image-amd64"
+version=${kernel_package#linux-image-}
+unpack "$kernel_package"
 unpack busybox-static
-kernel=$work/packages/$image/boot/vmlinuz-$version
+kernel=$work/packages/$kernel_package/boot/vmlinuz-$version
 
 out=$work/out
 rm -rf "$out"
@@ -76,15 +78,14 @@ install -D -m 644 -t "$root/usr/local/lib/boresight-test" "$source_dir/tests/sys
 install -m 644 -t "$root/etc/systemd/system" "$here"/guest/*.service
 install -D -m 644 "$here/vehicle.toml" "$root/etc/boresight/vehicle/vehicle_test.toml"
 mkdir -p "$root/var/lib/vehicle-feed" "$root/etc/systemd/system/multi-user.target.wants"
-"$here/can_feed.py" "$limit_s" > "$root/var/lib/vehicle-feed/can.log"
+"$here/can_feed.py" $drive_s > "$root/var/lib/vehicle-feed/can.log"
 for unit in "$here"/guest/*.service; do
   ln -s "/etc/systemd/system/$(basename "$unit")" "$root/etc/systemd/system/multi-user.target.wants/"
 done
 # The same work on this machine and in the guest gives the factor of emulation.
-TIMEFORMAT=%R
-{ time bash "$here/guest/work.sh"; } 2> "$out/work_s.txt"
+bash "$here/guest/work.sh" > "$out/work_s.txt"
 
-# What the guest needs of the tree, as one image: thousands of small requests to a shared folder take minutes on a busy machine.
+# What the guest needs of the tree, as one file: thousands of small requests to a shared folder take minutes on a busy machine.
 # Uncompressed, as the emulated processor would have to decompress it.
 mksquashfs "$root" "$work/root.squashfs" -noappend -quiet -no-progress -no-exports -noI -noD -noF -noX -wildcards \
   -p "dev d 755 0 0" -p "proc d 555 0 0" -p "sys d 555 0 0" -p "run d 755 0 0" -p "tmp d 1777 0 0" -p "root d 700 0 0" \
@@ -93,7 +94,7 @@ mksquashfs "$root" "$work/root.squashfs" -noappend -quiet -no-progress -no-expor
   'usr/lib/!(systemd|udev|sysusers.d|tmpfiles.d|sysctl.d|boresight|locale|os-release|*-linux-gnu)' \
   'usr/share/!(boresight|dbus-1|terminfo)' 'usr/local/!(lib)' 'usr/local/lib/!(boresight-test)' \
   'var/!(lib)' 'var/lib/!(vehicle-feed)' '... *.a' > "$out/squashfs.txt" 2>&1 || { cat "$out/squashfs.txt"; exit 1; }
-"$here/initramfs.sh" "$work/packages/$image" "$version" "$work/packages/busybox-static/bin/busybox" "$work/initramfs.cpio"
+"$here/initramfs.sh" "$work/packages/$kernel_package" "$version" "$work/packages/busybox-static/bin/busybox" "$work/initramfs.cpio"
 truncate -s 0 "$work/disk.raw" "$work/small.raw"
 truncate -s 2G "$work/disk.raw"
 truncate -s 64M "$work/small.raw"
@@ -113,7 +114,7 @@ masked=(
 )
 for module in configfs dm_mod drm efi_pstore fuse loop; do masked+=("modprobe@$module.service"); done
 append="console=ttyS0 quiet panic=-1 mitigations=off fstab=no luks=no systemd.unit=multi-user.target"
-append+=" systemd.show_status=0 systemd.journald.forward_to_console=0 boresight.work_s=$(tail -n 1 "$out/work_s.txt")"
+append+=" systemd.show_status=0 systemd.journald.forward_to_console=0 boresight.work_s=$(cat "$out/work_s.txt")"
 for unit in "${masked[@]}"; do append+=" systemd.mask=$unit"; done
 
 touch "$out/log.txt"
