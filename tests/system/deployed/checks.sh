@@ -17,10 +17,7 @@ within() {
 
 services=(ingest_gateway alignment_estimator detection_corrector ghost_filter tracker health)
 pid_of() { systemctl show -P MainPID "boresight-$1.service"; }
-all_active() {
-  local service
-  for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
-}
+all_active() { ! systemctl is-active boresight-roudi "${services[@]/#/boresight-}" | grep -qvx active; }
 # is_new SERVICE OLD_PID: true if the service runs as another process.
 is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
 # broker: RouDi itself, which the unit's main process runs as its child.

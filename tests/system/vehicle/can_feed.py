@@ -12,8 +12,8 @@ import sys
 SPEED_MPS = 10.0
 YAW_ERROR_RAD = math.radians(2.5)
 RADAR_X_M, RADAR_HEIGHT_M = 3.9, 0.6
-CYCLE_S, EGO_CYCLE_S = 0.1, 0.05
-REFLECTORS_SEEN = 14
+CYCLE_S, EGO_CYCLE_S = 0.2, 0.05
+REFLECTORS_SEEN = 8
 CAR_M = ((25.0, -0.6), (25.0, 0.0), (25.0, 0.6))  # ahead of the radar and to the left
 LIST_HEADER, DETECTION = 0x300, 0x301
 YAW_RATE, STEERING, WHEELS = 0x024, 0x025, 0x0AA

@@ -10,7 +10,7 @@ work=$build/vehicle
 limit_s=${BORESIGHT_VEHICLE_LIMIT_S:-3000}
 memory_mb=2048
 # canplayer repeats the drive.
-drive_s=600
+drive_s=300
 boots=3
 refuse() { echo "tests/run vehicle: $*" >&2; exit 2; }
 

@@ -8,7 +8,9 @@ factor_percent=$(
 )
 emulated() { [ "$factor_percent" -ge 200 ]; }
 # A slow guest on a busy host: no time below this is judged there. In milliseconds.
-patience_ms=30000
+patience_ms=120000
+# Between two looks. Each costs an emulated processor tenths of a second.
+emulated && pause_s=0.5 || pause_s=0.05
 
 # scale_time_outs: the units' time-outs are those of a real machine; an emulated one gets each times the factor. Written to
 # the disk, so that later boots have them, too.
@@ -42,7 +44,7 @@ timed() {
       failed=1
       return 1
     fi
-    sleep 0.05
+    sleep "$pause_s"
   done
   end=$(now_ms)
   echo "ok      $what: $(seconds $((end - begin))) s (bar $(seconds "$bar") s, judged here: $(seconds $limit) s)"
