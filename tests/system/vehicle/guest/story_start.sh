@@ -10,6 +10,7 @@ timed "every unit is active" 2000 all_active
 timed "track lists flow" 5000 flows "$begin_start"
 for radar in 1 2 3; do timed "radar $radar delivers" 5000 delivers "$radar" "$begin_start"; done
 monitor vehicle_test 300 > /out/monitor.txt &
+disown
 sees_the_car() { grep -q '"confirmed":true,"movement":"moving"' /out/monitor.txt; }
 timed "the car ahead is a confirmed moving track" 10000 sees_the_car
 pkill -TERM -f "boresight monitor"
