@@ -8,6 +8,8 @@ here=$source_dir/tests/system/vehicle
 work=$build/vehicle
 # Of all boots together. A hang ends the test, not the patience of the one who waits.
 limit_s=${BORESIGHT_VEHICLE_LIMIT_S:-3000}
+# Stories of the first boot, separated by commas; empty: all of them.
+stories=${BORESIGHT_VEHICLE_STORIES:-}
 memory_mb=2048
 # canplayer repeats the drive.
 drive_s=300
@@ -114,6 +116,7 @@ masked=(
 )
 for module in configfs dm_mod drm efi_pstore fuse loop; do masked+=("modprobe@$module.service"); done
 append="console=ttyS0 quiet panic=-1 mitigations=off fstab=no luks=no systemd.unit=multi-user.target"
+[ -z "$stories" ] || append+=" boresight.stories=$stories"
 append+=" systemd.show_status=0 systemd.journald.forward_to_console=0 boresight.work_s=$(cat "$out/work_s.txt")"
 for unit in "${masked[@]}"; do append+=" systemd.mask=$unit"; done
 
