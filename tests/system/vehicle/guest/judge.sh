@@ -84,10 +84,19 @@ domain_back() {
   while read -r service pid; do is_new "$service" "$pid" || return 1; done <<< "$1"
   flows "$2"
 }
-# codes FILE: the trouble codes that health stores, as lines of JSON.
-codes() { boresight dtc list --json --config /etc/boresight --seconds 60 > "$1" 2> "$1.txt"; }
+# codes FILE: the trouble codes in the stored fault memory, as lines of JSON.
+codes() {
+  boresight dtc list --json --config /etc/boresight --vehicle vehicle_test --state /var/lib/boresight/health/fault_memory \
+    > "$1" 2> "$1.txt"
+}
 has_code() { grep -q "\"name\":\"$2\"" "$1"; }
 stored() { codes /run/codes.jsonl && has_code /run/codes.jsonl "$1"; }
+# health_knows CODE WORD: health lists the code over DDS, with that word in its status. A full disk cannot store it.
+health_knows() {
+  boresight dtc list --json --config /etc/boresight --seconds 30 > /out/known.jsonl 2> /out/known.txt &&
+    grep "\"name\":\"$1\"" /out/known.jsonl | grep -q "\"status_words\":\"[^\"]*$2"
+}
+
 # kept BEFORE AFTER: every trouble code of BEFORE is in AFTER, with as many occurrences or more, and the same first freeze
 # frame. Prints those that are not.
 facts() { sed -nE 's/.*"code":"([^"]*)".*"occurrences":([0-9]+).*"first":\{"time_ns":([0-9]+).*/\1 \2 \3/p' "$1"; }
