@@ -11,4 +11,4 @@ for story in start ${chosen//,/ }; do
 done
 echo "==> reboot"
 codes /out/codes.1.jsonl
-restart_machine systemctl reboot
+restart_machine systemctl --no-block --job-mode=replace-irreversibly start reboot.target

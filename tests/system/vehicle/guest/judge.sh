@@ -119,7 +119,7 @@ kept() {
 restart_machine() {
   cp $observed "/out/diagnostics.$boot.jsonl"
   [ $failed -eq 0 ] || touch /out/failed
-  touch "/out/reboots.$boot"
+  touch "/out/reboots.$boot" /run/restarting
   "$@"
   sleep infinity
 }
