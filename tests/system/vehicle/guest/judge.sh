@@ -101,18 +101,15 @@ health_knows() {
 # frame. Prints those that are not.
 facts() { sed -nE 's/.*"code":"([^"]*)".*"occurrences":([0-9]+).*"first":\{"time_ns":([0-9]+).*/\1 \2 \3/p' "$1"; }
 kept() {
-  local code occurrences first now lost=0
-  [ -n "$(facts "$1")" ] || { echo "        no trouble code before"; return 1; }
-  while read -r code occurrences first; do
-    now=$(facts "$2" | grep "^$code ")
-    read -r _ now_occurrences now_first <<< "$now"
-    if [ -z "$now" ]; then echo "        $code is lost"; lost=1
-    elif [ "$now_occurrences" -lt "$occurrences" ]; then echo "        $code: $occurrences occurrences, now $now_occurrences"; lost=1
-    elif [ "$now_first" != "$first" ]; then echo "        $code: another first freeze frame"; lost=1
-    fi
-  done < <(facts "$1")
-  echo "        $(facts "$1" | wc -l) codes before, $(facts "$2" | wc -l) after"
-  return $lost
+  awk '
+    NR == FNR { occurrences[$1] = $2; first[$1] = $3; before++; next }
+    { after++ }
+    $1 in first && $2 >= occurrences[$1] && $3 == first[$1] { delete first[$1] }
+    END {
+      for (code in first) { print "        " code " is lost, or not as it was"; lost++ }
+      print "        " before + 0 " codes before, " after + 0 " after"
+      exit !(before > 0 && lost == 0)
+    }' <(facts "$1") <(facts "$2")
 }
 
 # restart_machine HOW…: leaves the verdict so far for the next boot and restarts.
