@@ -101,6 +101,7 @@ health_knows() {
 # frame. Prints those that are not.
 facts() { sed -nE 's/.*"code":"([^"]*)".*"occurrences":([0-9]+).*"first":\{"time_ns":([0-9]+).*/\1 \2 \3/p' "$1"; }
 kept() {
+  [ -s "$1" ] || return 1
   awk '
     NR == FNR { occurrences[$1] = $2; first[$1] = $3; before++; next }
     { after++ }
