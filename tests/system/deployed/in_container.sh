@@ -1,39 +1,9 @@
 #!/usr/bin/env bash
 # Runs as the only task of the booted container; README.md describes its checks.
 set -u
-failed=0
-check() { # check WHAT COMMAND…
-  local what=$1
-  shift
-  if "$@"; then echo "ok      $what"; else echo "FAILED  $what"; failed=1; fi
-}
-# within SECONDS COMMAND…: repeats COMMAND until it succeeds.
-within() {
-  local end=$((SECONDS + $1))
-  shift
-  until "$@"; do
-    [ "$SECONDS" -ge "$end" ] && return 1
-    sleep 0.1
-  done
-}
-
-services=(ingest_gateway alignment_estimator detection_corrector ghost_filter tracker health)
-pid_of() { systemctl show -P MainPID "boresight-$1.service"; }
-all_active() {
-  local service
-  for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
-}
-# broker: RouDi itself, which the unit's main process runs as its child.
-broker() { pgrep -P "$(pid_of roudi)"; }
-# is_new SERVICE OLD_PID: true if the service runs as another process.
-is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
-# monitor SECONDS: the topics as JSON, read by a member of the group.
-monitor() {
-  nsenter -m -t "$(pid_of roudi)" runuser -u boresight-monitor -- boresight monitor --config /etc/boresight \
-    --vehicle demo --json --duration "$1" 2>/dev/null
-}
-heartbeats_flow() { monitor 2 | tail -n 1 | grep -q '"name":"tracker","condition":"\(alive\|degraded\|restarted\)"'; }
-nothing_left() { [ -z "$(ls /dev/shm)" ] && ! pgrep -f '^/usr/lib/boresight/|iox-roudi' >/dev/null; }
+# shellcheck source=checks.sh
+source /usr/local/lib/boresight-test/checks.sh
+heartbeats_flow() { monitor demo 2 | tail -n 1 | grep -q '"name":"tracker","condition":"\(alive\|degraded\|restarted\)"'; }
 
 ip link set lo up multicast on
 ip route add 224.0.0.0/4 dev lo
@@ -58,7 +28,7 @@ done
 boresight diagnostics > /out/diagnostics.txt 2>&1 &
 diagnostics=$!
 systemctl start boresight-replay.service
-monitor 24 > /out/monitor.txt
+monitor demo 24 > /out/monitor.txt
 check "the replay played to its end" within 15 sh -c '! systemctl is-active -q boresight-replay.service'
 check "the replay ended well" [ "$(systemctl show -P Result boresight-replay.service)" = success ]
 kill -TERM $diagnostics
@@ -115,7 +85,7 @@ check "only health reaches the fault memory" closed health
 # refusals SERVICE: messages that this service refused.
 refusals() {
   local count
-  count=$(monitor 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"foreign memory\":[0-9]*" | grep -o '[0-9]*$')
+  count=$(monitor demo 1 | tail -n 1 | grep -o "\"name\":\"$1\"[^}]*\"foreign memory\":[0-9]*" | grep -o '[0-9]*$')
   echo "${count:-0}"
 }
 check "the readers refused no message so far" [ "$(refusals detection_corrector)" = 0 ]
@@ -142,7 +112,7 @@ check "a killed service comes back" within 5 is_new tracker "$tracker"
 check "alone" [ "$(pid_of ingest_gateway)" = "$gateway" ]
 check "and is heard again" within 5 heartbeats_flow
 # alive SERVICE: the monitor hears its heartbeats.
-alive() { monitor 1 | tail -n 1 | grep -q "\"name\":\"$1\",\"condition\":\"\(alive\|degraded\|restarted\)\""; }
+alive() { monitor demo 1 | tail -n 1 | grep -q "\"name\":\"$1\",\"condition\":\"\(alive\|degraded\|restarted\)\""; }
 for service in "${services[@]}"; do
   old=$(pid_of "$service")
   kill -KILL "$old"

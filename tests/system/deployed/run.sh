@@ -17,22 +17,20 @@ fi
 
 work=$build/deployed
 rm -rf "$work/out"
-mkdir -p "$work/out" "$work/memory"
-mount -t tmpfs tmpfs "$work/memory"
-mkdir "$work/memory/upper" "$work/memory/work" "$work/memory/root"
+mkdir -p "$work/out"
 root=$work/memory/root
-mount -t overlay overlay -o "lowerdir=/,upperdir=$work/memory/upper,workdir=$work/memory/work" "$root" 2>/dev/null ||
-  skip "no overlay file systems here"
+# shellcheck source=root_tree.sh
+source "$here/root_tree.sh"
+made=0
+make_root_tree "$work/memory" "$build" || made=$?
+[ $made -ne 1 ] || skip "no overlay file systems here"
+[ $made -eq 0 ] || exit 1
 
 nspawn=(systemd-nspawn --quiet --directory="$root" --machine="boresight-$$" --register=no --keep-unit
         --private-network --console=pipe)
 "${nspawn[@]}" /bin/true </dev/null >"$work/out/preflight.txt" 2>&1 ||
   skip "systemd-nspawn does not work here: $(tail -n 1 "$work/out/preflight.txt")"
 
-# A separate machine: none of the host's units, another identity.
-echo uninitialized > "$root/etc/machine-id"
-rm -rf "$root"/etc/systemd/system/*.wants
-DESTDIR=$root cmake --install "$build" --prefix /usr > "$work/out/install.txt"
 "$build/bin/boresight" simulate --vehicle "$source_dir/config/vehicle/demo.toml" --duration 25 \
   --out "$root/var/lib/boresight-drive" > "$work/out/simulate.txt"
 recordings=$(find "$root/var/lib/boresight-drive" \( -name '*.log' -o -name '*.pcap' \) -printf '/var/lib/boresight-drive/%f ')
@@ -40,6 +38,7 @@ cat > "$root/etc/default/boresight" <<EOF
 BORESIGHT_INPUT=replay
 BORESIGHT_REPLAY_ARGS=$recordings
 EOF
+install -D -m 644 -t "$root/usr/local/lib/boresight-test" "$here/checks.sh"
 install -m 755 "$here/in_container.sh" "$root/usr/local/bin/deployed-test"
 install -m 755 "$build/bin/deployed_impostor" "$root/usr/local/bin/deployed-impostor"
 cat > "$root/etc/systemd/system/deployed-test.service" <<'EOF'
