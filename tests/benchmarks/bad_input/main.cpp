@@ -42,22 +42,24 @@ constexpr double kLatestVerdict_s = 5.0, kMostFalseTracks = 1.0;
 
 struct Kind {
   const char* name;
-  const char* fault;  ///< keys of radars.data_fault (config/schema/scenario.md); nullptr: sound data
+  const char* table;  ///< of radars (config/schema/scenario.md); nullptr: sound data
+  const char* keys;   ///< its keys beside the times
   std::set<std::string> right;
 };
 
 const std::vector<Kind>& kinds() {
   static const std::set<std::string> blind = {"BLOCKED", "BEGINNING_BLOCKAGE"};
   static const std::vector<Kind> all = {
-      {"empty lists", "kind = \"few\"\ndetections = 0", blind},
-      {"few detections", "kind = \"few\"\ndetections = 3", blind},
-      {"near only", "kind = \"near\"\nreach_m = 8.0", blind},
-      {"80 % lost", "kind = \"lost\"\nshare = 0.8", {"RATE_REDUCED", "NO_DATA"}},
-      {"mirrored azimuth", "kind = \"mirrored_azimuth\"", {"WRONG_INPUT", "INVALID_DATA"}},
-      {"frozen", "kind = \"frozen\"", {"INVALID_DATA"}},
-      {"repeated", "kind = \"repeated\"", {"INVALID_DATA"}},
-      {"random", "kind = \"random\"", {"INVALID_DATA", "WRONG_INPUT", "EXTERNAL_DISTURBANCE"}},
-      {"sound", nullptr, {}},
+      {"empty lists", "data_fault", "kind = \"few\"\ndetections = 0", blind},
+      {"few detections", "data_fault", "kind = \"few\"\ndetections = 3", blind},
+      {"near only", "data_fault", "kind = \"near\"\nreach_m = 8.0", blind},
+      {"80 % lost", "data_fault", "kind = \"lost\"\nshare = 0.8", {"RATE_REDUCED", "NO_DATA"}},
+      {"mirrored azimuth", "data_fault", "kind = \"mirrored_azimuth\"", {"WRONG_INPUT", "INVALID_DATA"}},
+      {"frozen", "data_fault", "kind = \"frozen\"", {"INVALID_DATA"}},
+      {"repeated", "data_fault", "kind = \"repeated\"", {"INVALID_DATA"}},
+      {"random", "data_fault", "kind = \"random\"", {"INVALID_DATA", "WRONG_INPUT", "EXTERNAL_DISTURBANCE"}},
+      {"interference", "interference", "detections_per_scan = 150.0", {"EXTERNAL_DISTURBANCE", "INVALID_DATA"}},
+      {"sound", nullptr, nullptr, {}},
   };
   return all;
 }
@@ -85,8 +87,8 @@ fs::path write_scenario(const fs::path& place, const std::string& name, const Ki
   const fs::path file = place / fmt::format("{}_{}.toml", name, index);
   std::ofstream out(file);
   out << found->text << "\n";
-  if (kind.fault != nullptr) {
-    out << fmt::format("[[radars.data_fault]]\n{}\nbegin_s = {}\nduration_s = {}\n", kind.fault, kDamage.begin_s,
+  if (kind.table != nullptr) {
+    out << fmt::format("[[radars.{}]]\n{}\nbegin_s = {}\nduration_s = {}\n", kind.table, kind.keys, kDamage.begin_s,
                        kDamage.end_s - kDamage.begin_s);
   }
   out.flush();
@@ -137,7 +139,7 @@ void add(const std::string& profile, const Kind& kind, const std::vector<Result>
   }
   const std::string how = fmt::format("{} drives, {} radars", results.size(), right_after_s.size());
   const std::string group = profile + ", " + kind.name;
-  if (kind.fault != nullptr) {
+  if (kind.table != nullptr) {
     report.at_most(group, "right verdict after, largest", *std::max_element(right_after_s.begin(), right_after_s.end()),
                    kLatestVerdict_s, "s", how);
     report.beside(group, "right verdict after, median", median(right_after_s), "s", how);
