@@ -71,6 +71,7 @@ void Outlet::write(const HealthReport& report, bool at_once, std::int64_t now_ns
 void Outlet::serve(std::int64_t now_ns) {
   end_joining(now_ns);
   if (!channel_) return;
+  if (!channel_->topics.send()) node_.fault(Fault::kLink, std::string("DDS: ") + kRejection);
   for (const std::string& event : channel_->faults.serve(now_ns)) {
     runtime::log::warning("{}", event);
   }
@@ -82,10 +83,6 @@ bool Outlet::has_expired() const {
 
 dds::Now Outlet::moment(std::int64_t now_ns) {
   return {.monotonic_ns = now_ns, .epoch_ns = runtime::realtime_now_ns()};
-}
-
-void Outlet::report_rejection() {
-  node_.fault(Fault::kLink, std::string("DDS: ") + kRejection);
 }
 
 void Outlet::end() {

@@ -33,12 +33,12 @@ class Outlet {
 
   /// Sends if `at_once`, or if the configured period has passed since the last report.
   void write(const HealthReport& report, bool at_once, std::int64_t now_ns);
-  /// Passes on a TrackList, AlignmentEstimate or ServiceStatus.
+  /// Takes a TrackList, AlignmentEstimate or ServiceStatus to be passed on by serve().
   template <typename Message>
   void pass_on(const Message& message, std::int64_t now_ns) {
-    if (channel_ && !channel_->topics.write(message, moment(now_ns))) report_rejection();
+    if (channel_) channel_->topics.take(message, moment(now_ns));
   }
-  /// Sends what changed in the fault memory, and executes commands that were received.
+  /// Sends what was taken and what changed in the fault memory, and executes commands that were received.
   void serve(std::int64_t now_ns);
   /// At the orderly end of the service: tells the readers.
   void end();
@@ -59,7 +59,6 @@ class Outlet {
   };
 
   [[nodiscard]] static dds::Now moment(std::int64_t now_ns);
-  void report_rejection();
   /// Compares the interfaces with those of the participant; leaves the domain if it must be joined anew. Returns what
   /// is wrong with them.
   std::string look_at_interfaces();

@@ -47,15 +47,19 @@ TopicPublisher::TopicPublisher(Participant& participant, const Config& config, c
 
 TopicPublisher::~TopicPublisher() = default;
 
-bool TopicPublisher::write(const TrackList& list, Now now) {
-  if (tracks_ == nullptr || !track_pace_.take(now.monotonic_ns) || !has_reader(*tracks_)) return true;
-  const std::int64_t age_ns = now.monotonic_ns - list.header.measurement_time_ns;
-  fill(samples_->tracks, list, vehicle_.name, now.epoch_ns - age_ns);
-  return tracks_->write(&samples_->tracks);
+void TopicPublisher::take(const TrackList& list, Now now) {
+  if (tracks_ == nullptr || !track_pace_.take(now.monotonic_ns)) return;
+  if (waiting_lists_ == lists_->size()) {
+    first_list_ = (first_list_ + 1) % lists_->size();
+    --waiting_lists_;
+  }
+  List& place = (*lists_)[(first_list_ + waiting_lists_++) % lists_->size()];
+  place.list = list;
+  place.at = now;
 }
 
-bool TopicPublisher::write(const AlignmentEstimate& estimate, Now now) {
-  if (estimate.header.source_id >= radars_.size()) return true;
+void TopicPublisher::take(const AlignmentEstimate& estimate, Now now) {
+  if (estimate.header.source_id >= radars_.size()) return;
   Radar& radar = radars_[estimate.header.source_id];
   const AlignmentEvent event{.state = estimate.state,
                              .finding = estimate.finding,
@@ -63,21 +67,54 @@ bool TopicPublisher::write(const AlignmentEstimate& estimate, Now now) {
                              .step_changes = estimate.step_change.count,
                              .load_changes = estimate.load_change.count,
                              .speed_changes = estimate.speed_change.count};
-  if (!radar.pace.take(now.monotonic_ns, radar.sent != event)) return true;
-  radar.sent = event;
-  fill(samples_->alignment, estimate, vehicle_, now.epoch_ns);
-  return alignment_.write(&samples_->alignment);
+  if (!radar.pace.take(now.monotonic_ns, radar.taken != event)) return;
+  radar.taken = event;
+  radar.estimate = estimate;
+  radar.at = now;
+  radar.is_due = true;
 }
 
-bool TopicPublisher::write(const ServiceStatus& status, Now now) {
-  if (status.header.source_id >= services_.size()) return true;
+void TopicPublisher::take(const ServiceStatus& status, Now now) {
+  if (status.header.source_id >= services_.size()) return;
   Service& service = services_[status.header.source_id];
   const bool is_news = !service.has_status || service.status.state != status.state ||
                        service.status.incarnation_ns != status.incarnation_ns;
   service.status = status;
   service.has_status = true;
   // Without a verdict there is nothing to send yet.
-  return !is_news || !service.has_health || write_service(service, now);
+  if (!is_news || !service.has_health) return;
+  service.at = now;
+  service.is_due = true;
+}
+
+bool TopicPublisher::send() {
+  bool is_taken = write_lists();
+  for (Radar& radar : radars_) {
+    if (!radar.is_due) continue;
+    radar.is_due = false;
+    fill(samples_->alignment, radar.estimate, vehicle_, radar.at.epoch_ns);
+    is_taken = alignment_.write(&samples_->alignment) && is_taken;
+  }
+  for (Service& service : services_) {
+    if (!service.is_due) continue;
+    service.is_due = false;
+    is_taken = write_service(service, service.at) && is_taken;
+  }
+  return is_taken;
+}
+
+bool TopicPublisher::write_lists() {
+  if (waiting_lists_ == 0) return true;
+  bool is_taken = true;
+  const bool is_read = has_reader(*tracks_);
+  for (; waiting_lists_ > 0; --waiting_lists_, first_list_ = (first_list_ + 1) % lists_->size()) {
+    if (!is_read) continue;
+    const auto& [list, at] = (*lists_)[first_list_];
+    const std::int64_t age_ns = at.monotonic_ns - list.header.measurement_time_ns;
+    fill(samples_->tracks, list, vehicle_.name, at.epoch_ns - age_ns);
+    is_taken = tracks_->write(&samples_->tracks) && is_taken;
+  }
+  return is_taken;
 }
 
 bool TopicPublisher::write(const HealthReport& report, Now now) {

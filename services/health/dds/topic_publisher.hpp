@@ -23,20 +23,23 @@ struct Now {
   std::int64_t epoch_ns;
 };
 
-/// Every function returns false if the middleware did not take the sample. None waits for a reader.
+/// take() keeps what is due, without allocation or lock; send() and write() give it to the middleware. They return
+/// false if it did not take a sample, and wait for no reader.
 class TopicPublisher {
  public:
   /// Throws std::runtime_error if a topic or a writer cannot be created. `participant` must outlive this object.
   TopicPublisher(Participant& participant, const Config& config, const VehicleConfig& vehicle);
   ~TopicPublisher();
 
-  /// Sends the list if tracks are configured, somebody reads them, and the period of lists has passed.
-  bool write(const TrackList& list, Now now);
-  /// Sends the estimate if the period has passed, or if state, wrong input, drift or a sudden change differ from what
-  /// was sent.
-  bool write(const AlignmentEstimate& estimate, Now now);
-  /// Keeps the heartbeat for the next report. Sends it at once if the process or its state is another one.
-  bool write(const ServiceStatus& status, Now now);
+  /// The list is due if tracks are configured and the period of lists has passed. If too many wait, the oldest goes.
+  void take(const TrackList& list, Now now);
+  /// The estimate is due if the period has passed, or if state, wrong input, drift or a sudden change differ from what
+  /// was taken.
+  void take(const AlignmentEstimate& estimate, Now now);
+  /// The heartbeat is for the next report. It is due at once if the process or its state is another one.
+  void take(const ServiceStatus& status, Now now);
+  /// Sends what is due; track lists only if somebody reads them.
+  bool send();
   /// Sends the status of each service.
   bool write(const HealthReport& report, Now now);
   /// At the orderly end: readers see that the services are no longer observed.
@@ -56,20 +59,33 @@ class TopicPublisher {
   };
   struct Radar {
     Pace pace;
-    std::optional<AlignmentEvent> sent;
+    std::optional<AlignmentEvent> taken;
+    AlignmentEstimate estimate{};
+    Now at{};
+    bool is_due = false;
   };
   struct Service {
     ServiceHealth health{};
     ServiceStatus status{};
     bool has_health = false;
     bool has_status = false;
+    Now at{};
+    bool is_due = false;
+  };
+  struct List {
+    TrackList list{};
+    Now at{};
   };
 
   bool write_service(const Service& service, Now now);
+  bool write_lists();
 
   VehicleConfig vehicle_;
   std::unique_ptr<Samples> samples_;  ///< used again and again, so that their memory stays
   Pace track_pace_;
+  /// Lists that wait: one of each radar between two calls of send() leaves room.
+  std::unique_ptr<std::array<List, kMaxRadars>> lists_ = std::make_unique<std::array<List, kMaxRadars>>();
+  std::size_t first_list_ = 0, waiting_lists_ = 0;
   std::array<Radar, kMaxRadars + 1> radars_;  ///< by id
   std::array<Service, kMaxServices> services_;
   eprosima::fastdds::dds::DataWriter* tracks_;  ///< null if tracks are not configured

@@ -113,12 +113,14 @@ TEST_F(Profiles, ReceiveTracksAlignmentAndServices) {
   diagnostics::ServiceStatus got_status;
   fast::SampleInfo info;
   bool has_list = false, has_estimate = false, has_status = false;
-  ASSERT_TRUE(topics.write(estimate, Now{1, 1}));
+  topics.take(estimate, Now{1, 1});
+  ASSERT_TRUE(topics.send());
   ASSERT_TRUE(topics.write(*report, Now{1, 1}));
   EXPECT_TRUE(harness::eventually(
       10.0,
       [&] {
-        EXPECT_TRUE(topics.write(*list, Now{1, 1}));
+        topics.take(*list, Now{1, 1});
+        EXPECT_TRUE(topics.send());
         has_list = has_list || track_reader->take_next_sample(&got_list, &info) == ReturnCode_t::RETCODE_OK;
         has_estimate =
             has_estimate || alignment_reader->take_next_sample(&got_estimate, &info) == ReturnCode_t::RETCODE_OK;
