@@ -16,10 +16,10 @@ struct DisturbanceConfig {
   double learning_s = 10.0;      ///< motion until the level is known (choice)
   double memory_s = 600.0;       ///< motion over which the level is learnt (choice: longer than one kind of road)
   double least_log_std = 0.7;    ///< of the logarithm of the number, whatever was learnt (measured: RadarScenes)
-  double sigma = 2.5;         ///< deviations from the level that are no scene (measured: 2.5 in simulated clean drives)
-  double least_share = 0.35;  ///< of the detections that must be unexplained (measured: 0.22, likewise)
-  double passing_share = 0.7;   ///< of either limit, below which the test passes (choice: hysteresis)
-  double unusual_share = 0.05;  ///< weight in learning of what is not usual (choice)
+  double sigma = 2.5;            ///< deviations from the level that are no scene (choice)
+  double least_share = 0.35;     ///< of the detections that must be unexplained (choice)
+  double passing_share = 0.7;    ///< of either limit, below which the test passes (choice: hysteresis)
+  double unusual_share = 0.05;   ///< weight in learning of what is not usual (choice)
 };
 
 class DisturbanceMonitor {

@@ -24,7 +24,7 @@ struct SightConfig {
   double unusual_share = 0.05;  ///< weight in learning of what is not usual, so that no error lasts (choice)
   double least_detections =
       2.0;                      ///< fewer over `learning_s` of motion: blind, before a level is known (choice: strays)
-  double least_range_m = 10.0;  ///< that the detections reach, likewise (measured: 80 m in RadarScenes)
+  double least_range_m = 10.0;  ///< that the detections reach, likewise (choice)
 };
 
 /// A scan as the monitor sees it.
