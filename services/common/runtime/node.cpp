@@ -241,7 +241,7 @@ void Node::set_degraded(bool degraded) {
   impl_->degraded = degraded;
 }
 
-/// False for a message that another process than the topic's writer wrote, or that has another layout version.
+/// Why a message is refused: another process than the topic's writer wrote it, or it has another layout version.
 std::optional<Fault> Node::Impl::reason_to_refuse(const Input& input, const MessageHeader& message) {
   if (!segments.accept(input.topic, message)) {
     std::snprintf(status.last_fault.data(), status.last_fault.size(), "%.*s refused: not in the memory of its writer",
