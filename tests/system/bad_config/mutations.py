@@ -253,6 +253,7 @@ add_values("alignment_estimator",
            ("truth_file", '"/nowhere.csv"', "truth_file"), ("truth_file", '"/dev/zero"', "truth_file"),
            ("path", '"/tmp"', "memory.path"), ("path", '"/dev/null"', "memory.path"),
            ("prior_log_odds", "100.0", "plausibility.prior_log_odds"), ("margin_log", "100.0", "plausibility.margin_log"),
+           ("doubt_s", "0.0", "filter.remembered.doubt_s"), ("stop_s", "-1.0", "filter.remembered.stop_s"),
            ("min_inlier_share", "1.0", "filter.convergence.min_inlier_share"), ("passes", "1000000", "filter.start.passes"),
            ("interface", '"a/b"', "station.interface"), ("address", '"banana"', "station.address"),
            ("discovery_group", '"banana"', "station.discovery_group"))
