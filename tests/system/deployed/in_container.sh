@@ -66,6 +66,7 @@ for service in "${services[@]}"; do
 done
 stranger_is_shut_out() { ! setpriv --reuid nobody --regid nogroup --clear-groups sh -c 'exec 3</dev/shm/iceoryx_mgmt' 2>/dev/null; }
 check "a user of another group may not open the management memory" stranger_is_shut_out
+check "RouDi's wrapper sees for what RouDi waits" sh -c '! journalctl -b -u boresight-roudi | grep -q "does not show"'
 has_no_capability() { ! grep -q '^CapEff:.*[1-9a-f]' "/proc/$(broker)/status"; }
 check "RouDi has no capability" has_no_capability
 
