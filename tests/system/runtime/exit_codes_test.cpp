@@ -68,7 +68,7 @@ TEST_F(ExitCode, IsSeventyForAnUnrecoverableErrorOfTheMiddlewareWithItsName) {
   EXPECT_NE(logged().find("CONDITION_NOTIFIER_SEMAPHORE_CORRUPT_IN_NOTIFY"), std::string::npos) << logged();
 }
 
-/// A service that waits for ever, once it is told to stop.
+/// A service that waits for ever after the stop signal.
 int hang(runtime::Node& node) {
   static_cast<void>(node.spin());
   for (;;) pause();
