@@ -98,6 +98,13 @@ class GrowthTest(unittest.TestCase):
         self.assertEqual(found.verdict, judge.NOT_SHOWN)
         self.assertFalse(found.passed)
 
+    def test_a_difference_of_noisy_medians_is_no_proof_of_growth(self):
+        noise = random.Random(6)
+        points = [(10.0 * i, 100.0 + noise.gauss(0, 20.0)) for i in range(30)]
+        found = judge.growth("x", "us", points, 0.5, is_counted=False)
+        self.assertGreater(found.end - found.begin, 0.5)
+        self.assertEqual(found.verdict, judge.NOT_SHOWN)
+
     def test_growth_beyond_doubt_is_missed(self):
         self.assertEqual(self.of([20.0 + 0.1 * i for i in range(60)], 1.0).verdict, judge.MISSED)
 
