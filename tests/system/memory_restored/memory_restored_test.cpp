@@ -166,7 +166,9 @@ class IgnitionCycles : public testing::Test {
     EXPECT_NEAR(first.vehicle_yaw_rad, geometry::fixed_axes_angles(geometry::so3_exp(remembered))(0), 3e-4);
     EXPECT_NEAR(first.speed_scale, memory.speed_scale * (1.0 + radar.range_rate_scale), 2e-4);
     EXPECT_NEAR(yaw_std(first), doubted, 0.2 * doubted) << "what the excess of heights does to yaw counts, too";
-    if (was_off) EXPECT_LT(std::sqrt(variance), 0.9 * doubted) << "otherwise the standard deviation was not increased";
+    if (was_off) {
+      EXPECT_LT(std::sqrt(variance), 0.9 * doubted) << "otherwise the standard deviation was not increased";
+    }
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
     EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
     EXPECT_NE(log().find("alignment of 4 radars restored from " + file_.string()), std::string::npos) << log();

@@ -10,7 +10,7 @@ namespace boresight::alignment::windows {
 /// Choice: a memory that doubts more costs seconds of driving, one that doubts less is wrong after a repair.
 struct RestoreConfig {
   /// A memory that was written t seconds ago gets 1 − exp(−t/doubt_s) of these variances. Choice: a workshop turns a
-  /// radar, a driver changes a wheel in ten minutes; a service that was restarted was away for a second.
+  /// radar or changes tyres in ten minutes; a service that was restarted was away for a second.
   double doubt_s = 600.0;
   /// The load may have changed while nobody looked for this long (choice: to stop, to get in or out, to drive on).
   double stop_s = 20.0;

@@ -138,7 +138,6 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   } else if (radar.remembered && contradicts_memory(index, found, then)) {
     solver_.forget_rotation(index, radar.nominal);
     radar.contradicted = true;
-   
   }
   // Half a second of driving tells less than a memory.
   const bool begins_anew = !radar.remembered || radar.contradicted;
