@@ -1,5 +1,10 @@
 #include "services/alignment_estimator/store/keeper.hpp"
 
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
 #include "services/common/runtime/boot_time.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
@@ -27,10 +32,7 @@ void Keeper::restore(const std::filesystem::path& file) {
       log::info("no stored alignment in {}: starting from the nominal mounting", file.string());
       break;
     case LoadedMemory::Kind::kTaken:
-      estimator_.restore(loaded.memory, runtime::seconds_between({loaded.memory.boot, loaded.memory.since_boot_ns},
-                                                                 {boot_, runtime::since_boot_ns()}));
-      kept_drive_s_ = drive_s(loaded.memory);
-      log::info("alignment of {} radars restored from {}", loaded.memory.number_of_radars, file.string());
+      restore(loaded.memory, file);
       if (loaded.rejected_radars > 0) {
         log::warning("{} radars have another mounting than the stored one: they start from the nominal mounting",
                      loaded.rejected_radars);
@@ -47,6 +49,15 @@ void Keeper::restore(const std::filesystem::path& file) {
       log::warning("{}: stored alignment cannot be read: {}", file.string(), loaded.reason);
       break;
   }
+}
+
+void Keeper::restore(const Memory& memory, const std::filesystem::path& file) {
+  const double away_s =
+      runtime::seconds_between({memory.boot, memory.since_boot_ns}, {boot_, runtime::since_boot_ns()});
+  estimator_.restore(memory, away_s);
+  kept_drive_s_ = drive_s(memory);
+  const std::string age = std::isfinite(away_s) ? fmt::format("{:.0f} s old", away_s) : "of an earlier boot";
+  log::info("alignment of {} radars restored from {}, {}", memory.number_of_radars, file.string(), age);
 }
 
 double Keeper::drive_s(const Memory& memory) {

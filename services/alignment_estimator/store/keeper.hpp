@@ -25,6 +25,7 @@ class Keeper {
 
  private:
   void restore(const std::filesystem::path& file);
+  void restore(const Memory& memory, const std::filesystem::path& file);
   void keep();
   /// The estimator's memory with the present time.
   [[nodiscard]] Memory memory_now() const;
