@@ -127,10 +127,12 @@ TEST_P(SimulatedDrive, DamagedRangeRatesAreReportedForEveryRadarWithinSeconds) {
   for (std::size_t k = 0; k < judged.size(); ++k) {
     for (const auto& [id, radar] : judged[k]) {
       const std::uint64_t reported = radar->judge.counters().by_bit[5];
-      // None in the parking garage: at these speeds, damage looks like slow moving objects. A pool has 1500 detections;
-      // with the opposite sign, only some 15 detections per scan of the demo radars count.
-      EXPECT_GE(reported, radar->driven / 2) << damages()[k].first << ", radar " << id;
-      EXPECT_LT(reported, radar->driven - std::min<std::uint64_t>(radar->driven, 10) + 1) << "not by a single scan";
+      // None in the parking garage: at these speeds, damage looks like slow moving objects.
+      // Where most detections have similar range rates, as in a tunnel, the radar's own level is needed to find
+      // shuffled ones soon, and it is not known when the damage precedes the drive.
+      EXPECT_GE(reported, radar->driven / (damages()[k].first == "shuffled" ? 6 : 2))
+          << damages()[k].first << ", radar " << id;
+      EXPECT_LT(reported, radar->driven - std::min<std::uint64_t>(radar->driven, 2) + 1) << "not by a single scan";
     }
   }
 }
