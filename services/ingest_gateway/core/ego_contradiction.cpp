@@ -89,11 +89,17 @@ void EgoContradiction::weigh_alternatives(const RangeRateConsensus::Support& sup
   for (std::size_t k = 0; k < RangeRateConsensus::kOtherScales; ++k) {
     alternatives_[k].add(evidence(support.by_alternative[k]) - sound, scene_scans_, scene_scans_);
   }
-  constexpr std::size_t kMirrored = RangeRateConsensus::kMirrored, kRemembered = RangeRateConsensus::kRemembered;
-  alternatives_[kMirrored].add(evidence(support.by_alternative[kMirrored]) - sound, noise_scans_, noise_scans_);
-  // Two objects determine a velocity, so that it counts only where more must stand still.
-  const double found = share_.least() < kLeastShare ? 0.0 : evidence(support.by_alternative[kRemembered]);
-  alternatives_[kRemembered].add(found - std::max(sound, evidence(support.by_traffic)), noise_scans_, scene_scans_);
+  // Two objects determine a velocity, so that it counts only for a radar that is known to see stationary reflectors.
+  // Tracks of another radar last as long as a scene.
+  const bool sees_the_road = share_.least() >= kLeastShare;
+  for (const std::size_t k : {RangeRateConsensus::kMirrored, RangeRateConsensus::kRemembered}) {
+    const bool is_mirrored = k == RangeRateConsensus::kMirrored;
+    const double found = sees_the_road || is_mirrored ? evidence(support.by_alternative[k]) : 0.0;
+    const double traffic = evidence(support.as_traffic[k - RangeRateConsensus::kMirrored]);
+    const double dependent_scans = sees_the_road ? noise_scans_ : scene_scans_;
+    alternatives_[k].add(found - std::max(sound, traffic), dependent_scans,
+                         is_mirrored ? dependent_scans : scene_scans_);
+  }
 }
 
 void EgoContradiction::weigh_chance(const RangeRateConsensus::Support& support) {

@@ -29,6 +29,9 @@ constexpr float kLeastAlternative = 0.5F, kMostAlternative = 1.6F;
 /// Pairs of detections that propose an alternative in a scan, and the least sine of the angle between the two: noise
 /// grows with its inverse.
 constexpr std::size_t kPairs = 32;
+/// Speeds of vehicles that may be in view at once, besides stationary objects (choice: two lanes), and the
+/// number of detections that propose one.
+constexpr std::size_t kSpeedsOfTraffic = 2, kTriedSpeeds = 12;
 constexpr float kLeastSine = 0.3F;
 
 }  // namespace
@@ -79,7 +82,10 @@ RangeRateConsensus::Support RangeRateConsensus::test(const RadarScan& scan, cons
     const bool differs = k < kOtherScales || std::abs(alternative.across) > kLeastAcross;
     support.by_alternative[k] = differs ? count(alternative, tested) : 0;
   }
-  support.by_traffic = count_as_traffic(alternatives_[kRemembered], tested);
+  for (const std::size_t k : {kMirrored, kRemembered}) {
+    const bool is_better = support.by_alternative[k] > support.by_ego;
+    support.as_traffic[k - kMirrored] = is_better ? count_as_traffic(alternatives_[k], tested) : 0;
+  }
   if (!is_majority) remember(tested, support.by_alternative[kRemembered]);
   // Support if each range rate belonged to a detection half the list away: the support by chance.
   support.distinct = tested - count_alike(tested);
@@ -176,17 +182,29 @@ std::size_t RangeRateConsensus::count(const Candidate& candidate, std::size_t te
   return static_cast<std::size_t>(std::accumulate(supporting.begin(), supporting.end(), 0));
 }
 
-/// A radar of a narrow view hardly sees the velocity across: objects ahead that move along the road support such an
-/// alternative, too.
+std::bitset<RangeRateConsensus::kMaxTested> RangeRateConsensus::supporters(const Candidate& candidate,
+                                                                           std::size_t tested) const {
+  std::bitset<kMaxTested> supporting;
+  for (std::size_t k = 0; k < tested; ++k) supporting[k] = deviation_mps(candidate, k) < tolerance_[k];
+  return supporting;
+}
+
+/// Few objects determine no velocity across the road: for each, the alternative predicts the range rate that its speed
+/// along the road gives. Takes the speed that explains most, then the one that explains most of the others, and so on.
 std::size_t RangeRateConsensus::count_as_traffic(const Candidate& candidate, std::size_t tested) const {
-  if (!(std::abs(candidate.across) > kLeastAcross)) return 0;
-  float product = 0.0F, square = 0.0F;
-  for (std::size_t k = 0; k < tested; ++k) {
-    if (!(deviation_mps(candidate, k) < tolerance_[k])) continue;
-    product += rate_[k] * by_along_[k];
-    square += by_along_[k] * by_along_[k];
+  std::bitset<kMaxTested> left = supporters(candidate, tested);
+  const std::size_t supporting = left.count(), step = supporting / kTriedSpeeds + 1;
+  for (std::size_t speed = 0; speed < kSpeedsOfTraffic && left.any(); ++speed) {
+    std::bitset<kMaxTested> most;
+    for (std::size_t k = 0, nth = 0; k < tested; ++k) {
+      if (!left[k] || nth++ % step != 0) continue;
+      if (!(std::abs(by_along_[k]) > 0.0F)) continue;
+      const std::bitset<kMaxTested> explained = left & supporters({-rate_[k] / by_along_[k], 0.0F}, tested);
+      if (explained.count() > most.count()) most = explained;
+    }
+    left &= ~most;
   }
-  return square > 0.0F ? count({-product / square, 0.0F}, tested) : 0;
+  return supporting - left.count();
 }
 
 std::size_t RangeRateConsensus::best(std::size_t tested, std::size_t enough, std::size_t& most) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 
@@ -38,7 +39,8 @@ class RangeRateConsensus {
     std::size_t distinct = 0;          ///< whose predicted range rate differs from that of the other detection
     /// Stationary if the sensor moved otherwise; 0 for an alternative that does not differ or does not exist.
     std::array<std::size_t, kAlternatives> by_alternative{};
-    std::size_t by_traffic = 0;  ///< if all that supports the remembered one moved along the road at one speed instead
+    /// Of kMirrored and kRemembered: of those that support it, also explained by objects of few speeds along the road.
+    std::array<std::size_t, 2> as_traffic{};
   };
   [[nodiscard]] Support test(const RadarScan& scan, const EgoMotion& ego);
 
@@ -58,6 +60,7 @@ class RangeRateConsensus {
   [[nodiscard]] std::size_t best(std::size_t tested, std::size_t enough, std::size_t& most) const;
   [[nodiscard]] std::size_t count_alike(std::size_t tested) const;
   [[nodiscard]] std::size_t count_as_traffic(const Candidate& candidate, std::size_t tested) const;
+  [[nodiscard]] std::bitset<kMaxTested> supporters(const Candidate& candidate, std::size_t tested) const;
   void remember(std::size_t tested, std::size_t supporting);
 
   static constexpr int kYawSteps = 5, kScaleSteps = 2;  // to either side

@@ -16,8 +16,8 @@ class StationaryShare {
   /// Least share that a sound radar shows in a scene, by what was learnt. 0 for a radar that may report nothing but
   /// moving objects.
   [[nodiscard]] double least() const;
-  /// Mean share by chance.
-  [[nodiscard]] double by_chance() const { return by_chance_; }
+  /// Mean share by chance, above 0.
+  [[nodiscard]] double by_chance() const;
 
  private:
   double scene_s_, cycle_s_;
