@@ -63,9 +63,9 @@ TEST(SequentialTest, FewerScansThanASceneNeverDecide) {
 TEST(StationaryShare, IsThatOfTheLeastStationaryScenes) {
   constexpr double kCycle_s = 0.05;
   StationaryShare share(1.0, kCycle_s);
-  for (int scan = 0; scan < 20 * 120; ++scan) share.learn(scan / 40 % 2 == 0 ? 0.4 : 0.3, 1.0, 0.1, 100);
-  EXPECT_GT(share.least(), 0.2);
-  EXPECT_LT(share.least(), 0.28);
+  for (int scan = 0; scan < 20 * 120; ++scan) share.learn(scan / 40 % 2 == 0 ? 0.3 : 0.2, 1.0, 0.1, 100);
+  EXPECT_GT(share.least(), 0.13);
+  EXPECT_LT(share.least(), 0.21);
   EXPECT_NEAR(share.by_chance(), 0.1, 1e-9);
 }
 
