@@ -2,6 +2,7 @@
 // service that reports READY, strokes the watchdog as long as RouDi makes progress, and ends RouDi when it hangs.
 // README.md beside this file.
 #include <array>
+#include <cstdlib>
 #include <exception>
 #include <optional>
 #include <stdexcept>
@@ -69,8 +70,8 @@ using supervisor::now_ns;
 class Keeper {
  public:
   /// Members of the group `members` may register; without one, it is RouDi's own group.
-  Keeper(char* const* arguments, std::optional<gid_t> members)
-      : members_(members), signals_(open_signals()), roudi_(arguments) {}
+  Keeper(char* const* arguments, std::optional<gid_t> members, const ProgressLimits& limits)
+      : members_(members), signals_(open_signals()), roudi_(arguments), progress_(limits) {}
 
   /// Returns the exit code when RouDi has ended.
   int run() {
@@ -130,6 +131,9 @@ class Keeper {
     if (!is_checked_ && !progress_.is_judgeable()) {
       report("RouDi's periodic threads are not found; its progress is not watched");
     }
+    if (!is_checked_ && !progress_.sees_waits()) {
+      report("the kernel does not show for what RouDi waits; one that only lacks a processor may be taken for hung");
+    }
     is_checked_ = true;
     sd_notify(0, "WATCHDOG=1");
     return true;
@@ -165,7 +169,7 @@ int main(int argc, char** argv) {
     signal(SIGPIPE, SIG_IGN);
     std::optional<gid_t> members;
     if (has_members) members = group_number(argv[2]);
-    return Keeper(argv + program, members).run();
+    return Keeper(argv + program, members, limits_of([](const char* name) { return std::getenv(name); })).run();
   } catch (const std::invalid_argument& error) {
     report(error.what());
     return kUsageCode;

@@ -147,6 +147,8 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
 
   config::Reader remembered = table.table("remembered");
   windows::RestoreConfig& r = w.restore;
+  r.doubt_s = remembered.number("doubt_s", {1.0, 1e6}, r.doubt_s);
+  r.stop_s = remembered.number("stop_s", {0.0, 3600.0}, r.stop_s);
   r.rotation_std_rad = remembered.angle_deg("rotation_std_deg", {0.0, 30.0}, r.rotation_std_rad);
   r.rate_scale_std = remembered.number("range_rate_scale_std", {0.0, 0.1}, r.rate_scale_std);
   r.speed_scale_std = remembered.number("speed_scale_std", {0.0, 0.5}, r.speed_scale_std);

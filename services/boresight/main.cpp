@@ -1,6 +1,7 @@
 // `boresight`: the one command-line tool of the product.
 #include <CLI/CLI.hpp>
 
+#include "services/boresight/bounded/step.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
 
@@ -38,5 +39,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return boresight::report_parse_error(app, error);
   }
+  boresight::bounded::end_process_of_steps(exit_code);
   return exit_code;
 }

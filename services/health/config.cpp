@@ -148,6 +148,7 @@ FileConfig read_config(config::Reader root) {
   config::Reader levels = root.table("learnt_levels");
   c.level_store.enabled = levels.boolean("enabled", c.level_store.enabled);
   c.level_store.path = levels.text("path", c.level_store.path);
+  c.level_store.first_write_s = levels.number("first_write_s", {1.0, 3600.0}, c.level_store.first_write_s);
   c.level_store.write_period_s = levels.number("write_period_s", {5.0, 3600.0}, c.level_store.write_period_s);
   config::Reader dds = root.table("dds");
   c.dds.enabled = dds.boolean("enabled", c.dds.enabled);

@@ -24,6 +24,7 @@ struct LevelStoreConfig {
   bool enabled = true;
   /// "": the file `levels` in systemd's $STATE_DIRECTORY; without that variable nothing is stored.
   std::string path;
+  double first_write_s = 3.0;    ///< after a start; each wait is twice the last, up to the period (choice: likewise)
   double write_period_s = 60.0;  ///< while something is learnt (choice: motion that a power cut may cost, against wear)
 };
 

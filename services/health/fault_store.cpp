@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "services/common/runtime/boot_time.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/state_file.hpp"
@@ -115,13 +116,10 @@ void FaultStore::finish() {
 }
 
 std::uint64_t operation_cycle_id(OperationCycle kind) {
+  if (kind == OperationCycle::kBoot) return runtime::boot_fingerprint();
   state::Fingerprint print;
-  if (kind == OperationCycle::kBoot) {
-    print.add(std::string_view(content_of("/proc/sys/kernel/random/boot_id")));
-  } else {
-    print.add(static_cast<std::uint64_t>(runtime::realtime_now_ns()));
-    print.add(static_cast<std::uint64_t>(runtime::monotonic_now_ns()));
-  }
+  print.add(static_cast<std::uint64_t>(runtime::realtime_now_ns()));
+  print.add(static_cast<std::uint64_t>(runtime::monotonic_now_ns()));
   return print.value();
 }
 

@@ -28,6 +28,7 @@ LevelStore::LevelStore(runtime::Node& node, Supervision& supervision, const Vehi
     : node_(node),
       supervision_(supervision),
       identity_(levels_identity_of(vehicle, config.supervision)),
+      wait_ns_(static_cast<std::int64_t>(config.level_store.first_write_s * 1e9)),
       period_ns_(static_cast<std::int64_t>(config.level_store.write_period_s * 1e9)) {
   const std::optional<fs::path> file = state_file_of(config.level_store.enabled, config.level_store.path, "levels");
   if (!file) {
@@ -78,7 +79,9 @@ std::span<const std::uint8_t> LevelStore::encoded(const VehicleLevels& levels) {
 
 void LevelStore::keep(std::int64_t now_ns) {
   if (!writer_ || now_ns < next_ns_) return;
-  next_ns_ = now_ns + period_ns_;
+  // Sooner at first, so that a service that is often restarted keeps what it has learnt.
+  next_ns_ = now_ns + std::min(wait_ns_, period_ns_);
+  wait_ns_ = std::min(2 * wait_ns_, period_ns_);
   const std::uint64_t failures = writer_->failed();
   if (failures > reported_failures_) {
     node_.fault(Fault::kLink, "learnt levels cannot be stored: their file cannot be written",

@@ -21,7 +21,7 @@ class LevelStore {
  public:
   /// Restores the levels. A file that cannot be used is a fault of the node and the event `levels_lost`.
   LevelStore(runtime::Node& node, Supervision& supervision, const VehicleConfig& vehicle, const FileConfig& config);
-  /// Writes at the configured period if something was learnt since.
+  /// Writes if the time has come and something was learnt since.
   void keep(std::int64_t now_ns);
   /// Writes the last levels; call it after the node has stopped.
   void finish();
@@ -36,6 +36,7 @@ class LevelStore {
   runtime::Node& node_;
   Supervision& supervision_;
   LevelsIdentity identity_;
+  std::int64_t wait_ns_;  ///< to the next write
   std::int64_t period_ns_;
   std::array<std::uint8_t, kMaxLevelsBytes + 1> bytes_{};
   std::array<std::uint8_t, kMaxLevelsBytes> kept_{};  // the bytes that were restored, or offered last

@@ -8,74 +8,32 @@ import pathlib
 import re
 import shutil
 import signal
-import subprocess
-import threading
+import sys
 import time
 import tomllib
 
 import judge
 import records as r
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "system" / "harness"))
+from supervised import Output, Supervised, run_checked  # noqa: E402
+
 DDS_DOMAIN = 79
 STATE_SIZE, LOGS_SIZE = "256k", "16m"  # of the file systems that faults fill
 STATE_WRITING_PERIOD_S = 1.0  # of the alignment memory, so that kills hit its writing
 DRIVE_S = 37  # period of the speed of the shipped drive: the loop has no step of speed
-EVENT = re.compile(r"^([\d.]+) (spawned|ready|exited|hung|given up|start failed|domain restart|domain ready|stopped) "
-                   r"(\S+) (\d+) ?(.*)$")
 
 
-class Output:
-    """A process with the lines of its standard output, read by a thread."""
-
-    def __init__(self, command, environment, errors):
-        self.lines = []
-        self._lock = threading.Lock()
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors,
-                                        env=environment, text=True, errors="replace", start_new_session=True)
-        threading.Thread(target=self._read, daemon=True).start()
-
-    def _read(self):
-        for line in self.process.stdout:
-            with self._lock:
-                self.lines.append(line.rstrip("\n"))
-
-    def take(self):
-        with self._lock:
-            taken, self.lines = self.lines, []
-        return taken
-
-    def is_running(self):
-        return self.process.poll() is None
-
-    def end(self, how=signal.SIGTERM, patience_s=8):
-        """Exit code; after `patience_s` the process is killed."""
-        if self.is_running():
-            self.process.send_signal(how)
-        try:
-            return self.process.wait(patience_s)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            return self.process.wait()
-
-
-def run_checked(command, **options):
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, **options)
-
-
-class Product:
+class Product(Supervised):
     def __init__(self, source, build, folder):
-        self.source, self.bin, self.folder = source, build / "bin", folder
-        self.config, self.state, self.logs, self.run = (folder / name for name in ("config", "state", "logs", "run"))
+        super().__init__(build, folder, "demo", DDS_DOMAIN)
+        self.source = source
         self.drive = folder / "drive"
-        self.vehicle = self.config / "vehicle" / "demo.toml"
         self.wall_clock = folder / "wall_clock"
-        self.errors = (folder / "errors.txt").open("ab")
         self.records = []  # of the observers, not yet taken
-        self.events = []  # (time in ns, what, process, pid, detail) of all supervisors
-        self.pids = {}
         self.signalled = set()  # processes that the campaign itself ended
         self.strangers = set()  # GUIDs of writers
-        self.supervisor = self.input = self.bus_observer = self.dds_observer = self.reader = None
+        self.input = self.bus_observer = self.dds_observer = self.reader = None
         self.is_input_held = False
         self.recording = self.drive / "radars.pcap"
         self._prepare()
@@ -91,8 +49,6 @@ class Product:
         assert count == 1, "alignment_estimator.toml has another memory.period_s"
         estimator.write_text(text)
         self.step_wall_clock(0)
-        self.environment = {**os.environ, "BORESIGHT_RUNTIME_DIR": str(self.run), "STATE_DIRECTORY": str(self.state),
-                            "BORESIGHT_DDS_DOMAIN": str(DDS_DOMAIN)}
         self.stepped = {**self.environment, "BORESIGHT_TEST_WALL_CLOCK": str(self.wall_clock),
                         "LD_PRELOAD": str(next(self.bin.parent.glob("tests/system/clock_step/*wall_clock.so")))}
         run_checked([self.bin / "boresight", "simulate", "--scenario", "demo_drive", "--config", self.config,
@@ -121,15 +77,13 @@ class Product:
         observers = self.bin / "faults"
         self.dds_observer = Output([observers / "dds_observer", str(DDS_DOMAIN)], self.environment, self.errors)
         # A diagnosis tool of the product, which must survive everything that a stranger sends.
-        self.reader = Output([self.bin / "boresight", "diagnostics", "--all", "--json"], self.environment, self.errors)
+        self.reader = self.diagnosed()
 
     def start_supervisor(self):
-        self.supervisor = Output([self.bin / "boresight", "supervise", "--config", self.config, "--vehicle", "demo",
-                                  "--logs", self.logs, "--run-dir", self.run, "--replay"], self.stepped, self.errors)
+        super().start_supervisor(self.stepped)
 
     def start_input(self):
-        self.input = Output([self.bin / "boresight-replay", "--loop", "100000", self.recording,
-                             self.drive / "ego.candump.log"], self.environment, self.errors)
+        self.input = self.played([self.recording, self.drive / "ego.candump.log"])
 
     def _stop_bus_observer(self, at_ns):
         """The domain of the observer ended at `at_ns`."""
@@ -149,17 +103,7 @@ class Product:
             self.records.append(record)
 
     def _take_events(self):
-        for line in self.supervisor.take():
-            found = EVENT.match(line)
-            if not found:
-                continue
-            what, process, pid, detail = found[2], found[3], int(found[4]), found[5]
-            at_ns = int(float(found[1]) * r.SECOND_NS)
-            self.events.append((at_ns, what, process, pid, detail))
-            if what == "spawned":
-                self.pids[process] = pid
-            elif what == "exited" and self.pids.get(process) == pid:
-                del self.pids[process]
+        for at_ns, what, process, _, _ in self.take_events():
             if process == "roudi" and what in ("spawned", "ready", "exited", "hung") or what == "domain restart":
                 self._stop_bus_observer(at_ns)
             if process == "roudi" and what == "ready":
@@ -194,15 +138,6 @@ class Product:
         return taken
 
     # What faults do
-
-    def roudi(self):
-        """RouDi itself, the child of its wrapper; 0 if there is none."""
-        wrapper = self.pids.get("roudi", 0)
-        try:
-            children = pathlib.Path(f"/proc/{wrapper}/task/{wrapper}/children").read_text().split()
-        except OSError:
-            return 0
-        return int(children[0]) if children else 0
 
     def send(self, pid, how):
         """False if there is no such process. One that is to end by it has not crashed."""

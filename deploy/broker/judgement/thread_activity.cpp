@@ -7,6 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "deploy/broker/judgement/mutex_wait.hpp"
+
 namespace boresight::broker {
 
 namespace {
@@ -69,8 +71,10 @@ std::vector<ThreadActivity> read_activity(pid_t pid) {
   std::error_code error;
   const std::filesystem::path tasks = "/proc/" + std::to_string(pid) + "/task";
   for (std::filesystem::directory_iterator task(tasks, error), end; !error && task != end; task.increment(error)) {
-    const auto activity = parse_activity(content_of(task->path() / "status"), content_of(task->path() / "schedstat"));
-    if (activity) threads.push_back(*activity);
+    auto activity = parse_activity(content_of(task->path() / "status"), content_of(task->path() / "schedstat"));
+    if (!activity) continue;
+    if (activity->state == ThreadState::kSleeping) activity->wait = wait_of(pid, content_of(task->path() / "syscall"));
+    threads.push_back(*activity);
   }
   return threads;
 }

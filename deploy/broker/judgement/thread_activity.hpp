@@ -15,7 +15,8 @@ namespace boresight::broker {
 /// without scheduler statistics have no `schedstat`: an empty text is a processor time of 0.
 [[nodiscard]] std::optional<ThreadActivity> parse_activity(std::string_view status, std::string_view schedstat);
 
-/// All threads of the process; a thread that ends meanwhile is not included. Empty if the process is gone or hidden.
+/// All threads of the process, with what they wait for; a thread that ends meanwhile is not included. Empty if the
+/// process is gone or hidden.
 [[nodiscard]] std::vector<ThreadActivity> read_activity(pid_t pid);
 
 }  // namespace boresight::broker

@@ -8,6 +8,7 @@
 #include "services/alignment_estimator/core/kpi/nees.hpp"
 #include "services/alignment_estimator/core/make_method.hpp"
 #include "services/alignment_estimator/core/write_estimate.hpp"
+#include "services/common/estimation/scan_trust.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -47,7 +48,9 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   if (!radar->seen) begin(index);
   take_detections(scan, radar->config, detections_);
   plausibility_.add(index, detections_, ego);
-  if (moves) offer(index, ego);
+  // A scan that is proven wrong tells nothing of the mounting. What is wrong with it is for the search for wrong
+  // inputs.
+  if (moves && !is_scan_wrong(scan)) offer(index, ego);
   const auto period_ns = static_cast<std::int64_t>(config_.publish_period_s * 1e9);
   // By the measurement clock, so that a replay publishes the same estimates at any speed. If the clock went back, the
   // estimate is published at once.

@@ -47,8 +47,8 @@ class Estimator {
 
   /// Memory over ignition cycles; without radars if the method has none.
   [[nodiscard]] Memory memory() const;
-  /// To be called before the first scan.
-  void restore(const Memory& memory) { method_->restore(memory); }
+  /// To be called before the first scan; `away_s`: time since the memory was written, infinite if it is not known.
+  void restore(const Memory& memory, double away_s) { method_->restore(memory, away_s); }
   /// Applies the result of a static calibration, at any time: see Method::seed(). False also for an unknown radar.
   [[nodiscard]] bool seed(const RotationSeed& seed);
 

@@ -54,9 +54,10 @@ class Method {
   /// scan.count places. Never allocates.
   virtual void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
                        std::span<double> out) const = 0;
-  /// Memory over ignition cycles: writing and restoring. A method without memory does nothing.
+  /// Memory over restarts and ignition cycles: writing and restoring, `away_s` after it was written (infinite: not
+  /// known). A method without memory does nothing.
   virtual void save(Memory&) const {}
-  virtual void restore(const Memory&) {}
+  virtual void restore(const Memory&, double /*away_s*/) {}
   /// Starts this radar from the rotation of a static calibration (vector d of R(actual) = Exp(d)·R(nominal), covariance
   /// of d in rad²). The rotation replaces the estimate at full weight, unlike a restored memory. Returns false and
   /// changes nothing if it is not finite or the method always starts from the nominal mounting. Never allocates.

@@ -1,5 +1,7 @@
 #include "services/alignment_estimator/store/keeper.hpp"
 
+#include "services/common/runtime/boot_time.hpp"
+#include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
 
 namespace boresight::alignment {
@@ -8,7 +10,7 @@ namespace log = runtime::log;
 
 Keeper::Keeper(runtime::Node& node, Estimator& estimator, const VehicleConfig& vehicle,
                const std::optional<std::filesystem::path>& file, double period_s)
-    : node_(node), estimator_(estimator), identity_(identity_of(vehicle)) {
+    : node_(node), estimator_(estimator), identity_(identity_of(vehicle)), boot_(runtime::boot_fingerprint()) {
   if (!file) {
     log::info("no memory over ignition cycles: no file is configured");
     return;
@@ -25,7 +27,8 @@ void Keeper::restore(const std::filesystem::path& file) {
       log::info("no stored alignment in {}: starting from the nominal mounting", file.string());
       break;
     case LoadedMemory::Kind::kTaken:
-      estimator_.restore(loaded.memory);
+      estimator_.restore(loaded.memory, runtime::seconds_between({loaded.memory.boot, loaded.memory.since_boot_ns},
+                                                                 {boot_, runtime::since_boot_ns()}));
       kept_drive_s_ = drive_s(loaded.memory);
       log::info("alignment of {} radars restored from {}", loaded.memory.number_of_radars, file.string());
       if (loaded.rejected_radars > 0) {
@@ -52,6 +55,13 @@ double Keeper::drive_s(const Memory& memory) {
   return sum;
 }
 
+Memory Keeper::memory_now() const {
+  Memory memory = estimator_.memory();
+  memory.boot = boot_;
+  memory.since_boot_ns = runtime::since_boot_ns();
+  return memory;
+}
+
 std::span<const std::uint8_t> Keeper::encoded(const Memory& memory) {
   return std::span(bytes_).first(encode_memory(memory, identity_, bytes_));
 }
@@ -67,7 +77,7 @@ void Keeper::keep() {
     node_.fault(Fault::kLink, "alignment cannot be stored: its file cannot be written", failures - reported_failures_);
     reported_failures_ = failures;
   }
-  const Memory memory = estimator_.memory();
+  const Memory memory = memory_now();
   // A stationary vehicle gives no new information, and flash memory wears out.
   if (drive_s(memory) == kept_drive_s_) return;
   if (offer(memory)) kept_drive_s_ = drive_s(memory);
@@ -75,14 +85,14 @@ void Keeper::keep() {
 
 void Keeper::remember() {
   if (!writer_) return;
-  const Memory memory = estimator_.memory();
+  const Memory memory = memory_now();
   // If the writer is busy, the next turn or the end writes.
   kept_drive_s_ = offer(memory) ? drive_s(memory) : -1.0;
 }
 
 void Keeper::finish() {
   if (!writer_) return;
-  const Memory memory = estimator_.memory();
+  const Memory memory = memory_now();
   if (memory.number_of_radars == 0) return;
   const auto bytes = encoded(memory);
   const std::string problem = bytes.empty() ? "it is not of this vehicle" : writer_->finish(bytes);

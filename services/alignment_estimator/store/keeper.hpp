@@ -26,6 +26,8 @@ class Keeper {
  private:
   void restore(const std::filesystem::path& file);
   void keep();
+  /// The estimator's memory with the present time.
+  [[nodiscard]] Memory memory_now() const;
   /// Sum over all radars; it grows with every scan used.
   [[nodiscard]] static double drive_s(const Memory& memory);
   /// The memory as bytes; empty if it does not belong to this vehicle. Valid until the next call.
@@ -35,6 +37,7 @@ class Keeper {
   runtime::Node& node_;
   Estimator& estimator_;
   Identity identity_;
+  std::uint64_t boot_;
   MemoryBytes bytes_;
   double kept_drive_s_ = 0.0;
   std::uint64_t reported_failures_ = 0;

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "services/boresight/bounded/joined.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/diagnostics_topics.hpp"
 #include "services/boresight/commands/run_command.hpp"
@@ -64,9 +65,10 @@ class LinePrinter {
   }
   [[nodiscard]] std::uint64_t printed() const { return printed_; }
   [[nodiscard]] bool failed() const { return failed_; }
-  /// Throws OutputError if a line could not be written.
+  /// Ends the output: later lines are dropped. Throws OutputError if a line could not be written.
   void commit() {
     const std::lock_guard lock(mutex_);
+    failed_ = true;
     if (error_) std::rethrow_exception(error_);
     output_.commit();
   }
@@ -134,40 +136,60 @@ dds::Config dds_of(const DiagnosticsOptions& options) {
   return config;
 }
 
-int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {
-  const bool is_json = !options.json.empty();
-  LinePrinter printer(is_json ? options.json : "-");
+/// What the callbacks of the middleware use; they may come as long as the process runs.
+struct Printed {
+  explicit Printed(const std::string& file) : printer(file) {}
+  LinePrinter printer;
   StateChanges changes;
   SystemChanges system_changes;
+};
+
+dds::DiagnosticsCallbacks callbacks_of(const DiagnosticsOptions& options, const std::shared_ptr<Printed>& printed) {
   dds::DiagnosticsCallbacks callbacks;
+  const bool is_json = !options.json.empty(), all = options.all;
   if (options.topics.any()) {
     // Health is not read.
   } else if (options.array) {
-    callbacks.on_diagnostic_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
-      printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
+    callbacks.on_diagnostic_array = [is_json, printed](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
+      printed->printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
     };
   } else {
-    callbacks.on_sensor_health = [&](const diagnostics::SensorHealth& sensor) {
-      if (!changes.observe(sensor) && !options.all) return;
-      printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor) + "\n");
+    callbacks.on_sensor_health = [is_json, all, printed](const diagnostics::SensorHealth& sensor) {
+      if (!printed->changes.observe(sensor) && !all) return;
+      printed->printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor) + "\n");
     };
-    callbacks.on_system_health = [&](const diagnostics::SystemHealth& system) {
-      if (!system_changes.observe(system) && !options.all) return;
-      printer.print(is_json ? diagnostics_text::to_json(system) : diagnostics_text::to_line(system) + "\n");
+    callbacks.on_system_health = [is_json, all, printed](const diagnostics::SystemHealth& system) {
+      if (!printed->system_changes.observe(system) && !all) return;
+      printed->printer.print(is_json ? diagnostics_text::to_json(system) : diagnostics_text::to_line(system) + "\n");
     };
   }
-  callbacks.on_presence = [&](const dds::Presence& presence) {
+  callbacks.on_presence = [is_json, printed](const dds::Presence& presence) {
     const std::int64_t now_ns = runtime::realtime_now_ns();
-    printer.print(is_json ? diagnostics_text::to_json(presence, now_ns)
-                          : diagnostics_text::to_line(presence, now_ns) + "\n");
+    printed->printer.print(is_json ? diagnostics_text::to_json(presence, now_ns)
+                                   : diagnostics_text::to_line(presence, now_ns) + "\n");
   };
-  const dds::Config config = dds_of(options);
-  std::optional<dds::DiagnosticsReader> reader(std::in_place, config, std::move(callbacks));
-  std::optional<dds::TopicReader> topic_reader;
-  if (options.topics.any()) {
-    const auto print = [&printer](const std::string& text) { printer.print(text); };
-    topic_reader.emplace(config, printing(options.topics, is_json, print));
+  return callbacks;
+}
+
+struct Readers {
+  Readers(const dds::Config& config, const DiagnosticsOptions& options, const std::shared_ptr<Printed>& printed)
+      : health(config, callbacks_of(options, printed)) {
+    if (!options.topics.any()) return;
+    const auto print = [printed](const std::string& text) { printed->printer.print(text); };
+    topics.emplace(config, printing(options.topics, !options.json.empty(), print));
   }
+  dds::DiagnosticsReader health;
+  std::optional<dds::TopicReader> topics;
+};
+
+int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {
+  const auto printed = std::make_shared<Printed>(options.json.empty() ? "-" : options.json);
+  LinePrinter& printer = printed->printer;
+  const dds::Config config = dds_of(options);
+  bounded::Joined<Readers> readers(
+      fmt::format("DDS domain {}", config.domain),
+      [config, options, printed] { return std::make_unique<Readers>(config, options, printed); },
+      [] { return runtime::stop_signalled(); });
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -177,8 +199,7 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   while (!runtime::stop_signalled() && !is_over() && !is_enough() && !printer.failed()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  reader.reset();  // no further lines
-  topic_reader.reset();
+  readers.leave();  // no further lines
   printer.commit();
   int result = exit_code::kSuccess;
   if (printer.printed() < std::max<std::uint64_t>(options.count, 1)) {

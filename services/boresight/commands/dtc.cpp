@@ -10,12 +10,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "services/boresight/bounded/joined.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/diagnostics/fault_text.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/state_file.hpp"
+#include "services/common/runtime/stop_signal.hpp"
 #include "services/common/text/printable.hpp"
 #include "services/health/config.hpp"
 #include "services/health/core/faults/codec.hpp"
@@ -36,6 +38,7 @@ struct DtcOptions {
   double seconds = 10.0;  ///< discovery takes some 20 ms, and seconds more if a datagram was lost
 };
 
+using Client = bounded::Joined<dds::FaultMemoryClient>;
 using Records = std::vector<diagnostics::FaultRecord>;
 
 struct FaultList {
@@ -50,13 +53,20 @@ dds::Config dds_of(const DtcOptions& options) {
   return config;
 }
 
+Client join(const dds::Config& config, dds::FaultMemoryClient::Use use) {
+  return Client(
+      fmt::format("DDS domain {}", config.domain),
+      [config, use] { return std::make_unique<dds::FaultMemoryClient>(config, use); },
+      [] { return runtime::stop_signalled(); });
+}
+
 /// Polls until `is_done`; false after the time of --seconds.
 template <typename IsDone>
-bool wait_for(const DtcOptions& options, dds::FaultMemoryClient& client, const IsDone& is_done) {
+bool wait_for(const DtcOptions& options, const Client& client, const IsDone& is_done) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   while (std::chrono::steady_clock::now() < end) {
     stop_if_interrupted();
-    client.poll();
+    client->poll();
     if (is_done()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -67,18 +77,28 @@ std::string head_of(const std::string& vehicle, std::uint32_t cycle, std::uint32
   return fmt::format("{}: operation cycle {}, {} stored", vehicle, cycle, stored);
 }
 
-[[noreturn]] void report_absence(const DtcOptions& options, std::uint32_t domain) {
-  throw Finding(fmt::format("no health service answered on DDS domain {} within {} s", domain, options.seconds));
+/// Why the time of --seconds was not enough.
+[[noreturn]] void report_absence(const DtcOptions& options, std::uint32_t domain, const Client& client,
+                                 const std::string& missing) {
+  if (!client->state()) {
+    throw Finding(fmt::format("no health service answered on DDS domain {} within {} s", domain, options.seconds));
+  }
+  throw Finding(fmt::format("the health service on DDS domain {} answered, but {} within {} s", domain, missing,
+                            options.seconds));
 }
 
 FaultList list_by_dds(const DtcOptions& options) {
   const dds::Config config = dds_of(options);
-  dds::FaultMemoryClient client(config, dds::FaultMemoryClient::Use::kRead);
-  if (!wait_for(options, client, [&] { return client.is_complete(); })) report_absence(options, config.domain);
+  const Client client = join(config, dds::FaultMemoryClient::Use::kRead);
+  if (!wait_for(options, client, [&] { return client->is_complete(); })) {
+    report_absence(options, config.domain, client,
+                   fmt::format("only {} of {} codes arrived", client->stored_records(),
+                               client->state() ? client->state()->stored() : 0));
+  }
   FaultList list;
-  const diagnostics::FaultMemoryState& state = *client.state();
+  const diagnostics::FaultMemoryState& state = *client->state();
   list.head = head_of(state.vehicle_name(), state.operation_cycle(), state.stored());
-  for (const auto& [dtc, record] : client.records()) list.records.push_back(record);
+  for (const auto& [dtc, record] : client->records()) list.records.push_back(record);
   return list;
 }
 
@@ -143,23 +163,23 @@ int run_clear(const DtcOptions& options) {
   std::string problem;
   const dds::CommandKey key = dds::read_command_key(config.command_key_file, problem);
   if (!problem.empty()) throw UsageError(problem);
-  dds::FaultMemoryClient client(config, dds::FaultMemoryClient::Use::kCommand);
-  if (!wait_for(options, client, [&] { return client.state() && client.can_command(); })) {
-    report_absence(options, config.domain);
+  const Client client = join(config, dds::FaultMemoryClient::Use::kCommand);
+  if (!wait_for(options, client, [&] { return client->state() && client->can_command(); })) {
+    report_absence(options, config.domain, client, "took no commands");
   }
   const std::uint64_t number = std::random_device{}();
   // The service may discover this tool later than the tool the service: the command is repeated until the reply.
   constexpr std::chrono::milliseconds kRepetition{300};
   auto next = std::chrono::steady_clock::now();
   const bool is_answered = wait_for(options, client, [&] {
-    if (client.reply(number) != nullptr) return true;
+    if (client->reply(number) != nullptr) return true;
     if (std::chrono::steady_clock::now() < next) return false;
-    client.clear(dtc, number, key);
+    client->clear(dtc, number, key);
     next = std::chrono::steady_clock::now() + kRepetition;
     return false;
   });
-  if (!is_answered) throw Finding("the health service did not reply");
-  const diagnostics::CommandReply& reply = *client.reply(number);
+  if (!is_answered) report_absence(options, config.domain, client, "did not reply to the command");
+  const diagnostics::CommandReply& reply = *client->reply(number);
   if (!reply.is_accepted()) throw Finding("refused: " + text::printable(reply.reason()));
   terminal::print(options.code.empty() ? "all codes cleared\n" : options.code + " cleared\n");
   return exit_code::kSuccess;

@@ -10,7 +10,8 @@ namespace boresight::json {
 /// Keys stay in the order in which they were added.
 using Value = nlohmann::ordered_json;
 
-/// One line with line feed. What is no number becomes null, damaged UTF-8 the replacement character.
+/// One line with line feed. What is no number becomes null, damaged UTF-8 the replacement character. Control characters
+/// and marks of reading direction are escaped (\u009b): names and texts may come from outside.
 [[nodiscard]] std::string line(const Value& value);
 /// The same indented by two blanks.
 [[nodiscard]] std::string document(const Value& value);

@@ -17,6 +17,9 @@ std::int64_t read_ns(clockid_t clock) {
 std::int64_t monotonic_now_ns() {
   return read_ns(CLOCK_MONOTONIC);
 }
+std::int64_t since_boot_ns() {
+  return read_ns(CLOCK_BOOTTIME);
+}
 std::int64_t realtime_now_ns() {
   return read_ns(CLOCK_REALTIME);
 }

@@ -1,8 +1,14 @@
 #include "services/common/runtime/service_main.hpp"
 
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -13,6 +19,26 @@
 #include "services/common/text/printable.hpp"
 
 namespace boresight::runtime {
+
+namespace {
+
+constexpr const char* kStopLimitKey = "BORESIGHT_STOP_LIMIT_MS";
+
+/// The time from SIGTERM to the end at the latest, where the service manager states it.
+std::optional<std::chrono::milliseconds> stop_limit_of_environment() {
+  const char* const value = std::getenv(kStopLimitKey);
+  if (value == nullptr) return std::nullopt;
+  constexpr std::int64_t kLeast_ms = 100, kMost_ms = 3'600'000;
+  const std::string_view text = value;
+  std::int64_t limit_ms = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), limit_ms);
+  if (error != std::errc() || end != text.data() + text.size() || limit_ms < kLeast_ms || limit_ms > kMost_ms) {
+    throw config::Error(std::string(kStopLimitKey) + "=" + value + ": must be a whole number from 100 to 3600000");
+  }
+  return std::chrono::milliseconds(limit_ms);
+}
+
+}  // namespace
 
 int service_main(catalogue::Service self, int argc, char** argv, const Load& load, const Inspect& inspect) {
   const std::string name = "boresight-" + std::string(catalogue::name_of(self));
@@ -36,6 +62,7 @@ int service_main(catalogue::Service self, int argc, char** argv, const Load& loa
   log::initialise(name);
   install_stop_signals();
   try {
+    if (const auto limit = stop_limit_of_environment()) limit_stop_time(*limit);
     const Run run = load(configuration);
     if (check) {
       if (inspect) inspect(configuration);

@@ -16,7 +16,8 @@ using Load = std::function<Run(const Configuration&)>;
 /// What --check looks at in addition: findings with which the service runs nevertheless. Throws config::Error.
 using Inspect = std::function<void(const Configuration&)>;
 
-/// Handles --config DIR, --vehicle NAME|FILE, --check, --version, --help and SIGTERM. Returns an exit code of
+/// Handles --config DIR, --vehicle NAME|FILE, --check, --version, --help and SIGTERM. If the environment has
+/// BORESIGHT_STOP_LIMIT_MS, the service ends that long after SIGTERM at the latest, by SIGKILL. Returns an exit code of
 /// exit_codes.hpp.
 int service_main(catalogue::Service self, int argc, char** argv, const Load& load, const Inspect& inspect = {});
 

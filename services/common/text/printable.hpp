@@ -11,8 +11,6 @@ namespace boresight::text {
 
 enum class LineBreaks { kReplaced, kKept };
 
-namespace detail {
-
 /// First character of a text of UTF-8.
 struct Character {
   std::size_t bytes = 1;
@@ -45,17 +43,15 @@ struct Character {
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF;
 }
 
-}  // namespace detail
-
 /// The text with ? in place of each control character and of each byte that is not UTF-8. A control character would
 /// move the cursor, change the terminal or begin a line. Applied twice, it changes nothing more.
 [[nodiscard]] inline std::string printable(std::string_view text, LineBreaks breaks = LineBreaks::kReplaced) {
   std::string shown;
   shown.reserve(text.size());
   while (!text.empty()) {
-    const detail::Character next = detail::first_character(text);
+    const Character next = first_character(text);
     const bool is_kept_break = next.code == '\n' && breaks == LineBreaks::kKept;
-    if (next.is_valid && (!detail::is_control(next.code) || is_kept_break)) {
+    if (next.is_valid && (!is_control(next.code) || is_kept_break)) {
       shown.append(text.substr(0, next.bytes));
     } else {
       shown += '?';

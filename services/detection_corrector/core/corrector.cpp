@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "services/common/estimation/scan_trust.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/detection_corrector/core/ego_velocity.hpp"
 #include "services/detection_corrector/core/stationary_test.hpp"

@@ -2,15 +2,8 @@
 #pragma once
 
 #include "interfaces/messages/alignment_estimate.hpp"
-#include "interfaces/messages/radar_scan.hpp"
 
 namespace boresight::corrector {
-
-/// True if the gateway found that the scan as a whole is no new measurement, or contradicts the vehicle's motion.
-[[nodiscard]] inline bool is_scan_wrong(const RadarScan& scan) {
-  using namespace scan_integrity;
-  return (scan.integrity & (kRepeated | kFrozen | kContradictsEgo | kImpossibleCopies)) != 0;
-}
 
 /// True if the finding places the radar's detections wrongly. Findings about speed and yaw rate alone do not.
 [[nodiscard]] inline bool places_detections_wrongly(AlignmentFinding finding) {

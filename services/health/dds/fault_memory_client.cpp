@@ -17,12 +17,14 @@ namespace {
 
 namespace fast = eprosima::fastdds::dds;
 
-/// Calls `take(sample, is_alive)` for each sample that waits.
+/// Calls `take(sample, is_alive, info)` for each sample that waits, but no more than a reader holds: a sender must not
+/// keep a tool busy.
 template <typename Sample, typename Take>
 void take_all(fast::DataReader& reader, const Take& take) {
   Sample sample;
   fast::SampleInfo info;
-  while (reader.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+  for (int i = 0; i < kMostEvents; ++i) {
+    if (reader.take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return;
     take(sample, info.valid_data, info);
   }
 }
@@ -77,12 +79,14 @@ void FaultMemoryClient::poll() {
   });
 }
 
-bool FaultMemoryClient::is_complete() const {
-  if (!state_) return false;
-  const auto stored = std::count_if(records_.begin(), records_.end(), [](const auto& entry) {
+std::size_t FaultMemoryClient::stored_records() const {
+  return static_cast<std::size_t>(std::count_if(records_.begin(), records_.end(), [](const auto& entry) {
     return (entry.second.status() & (health::dtc_status::kPending | health::dtc_status::kConfirmed)) != 0;
-  });
-  return stored >= static_cast<std::ptrdiff_t>(state_->stored());
+  }));
+}
+
+bool FaultMemoryClient::is_complete() const {
+  return state_ && stored_records() >= state_->stored();
 }
 
 bool FaultMemoryClient::can_command() const {

@@ -1,6 +1,7 @@
 // A tool's view of the fault memory over DDS, and its commands.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -29,6 +30,8 @@ class FaultMemoryClient {
   [[nodiscard]] const std::map<std::uint32_t, diagnostics::FaultRecord>& records() const { return records_; }
   /// Nothing until the health service was found.
   [[nodiscard]] const std::optional<diagnostics::FaultMemoryState>& state() const { return state_; }
+  /// Number of received records that are stored, that is pending or confirmed.
+  [[nodiscard]] std::size_t stored_records() const;
   /// True when as many stored records as the state counts were received.
   [[nodiscard]] bool is_complete() const;
 

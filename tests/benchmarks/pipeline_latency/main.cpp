@@ -10,12 +10,11 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/simulator/scenario_file.hpp"
-#include "services/simulator/wire/ars548_encoder.hpp"
-#include "services/simulator/wire/pcap_writer.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
 #include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
 #include "tests/benchmarks/pipeline_latency/load/bench_vehicle.hpp"
 #include "tests/benchmarks/pipeline_latency/load/crowded_road.hpp"
+#include "tests/benchmarks/pipeline_latency/load/recording.hpp"
 #include "tests/benchmarks/pipeline_latency/stage_losses.hpp"
 #include "tests/system/harness/domain.hpp"
 #include "tests/system/harness/observer.hpp"
@@ -34,34 +33,7 @@ struct Load {
   [[nodiscard]] bool is_default() const { return radars == 4 && detections == bench::kDetections && busy == 0; }
 };
 
-constexpr std::int64_t kCycle_ns = 50'000'000;
-constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;  // of the simulated ego recording
 constexpr double kMostTrackerMean_ms = 1.0, kMostTrackerP99_ms = 3.0;
-
-std::uint32_t ipv4(const std::string& text) {
-  unsigned a = 0, b = 0, c = 0, d = 0;
-  std::sscanf(text.c_str(), "%u.%u.%u.%u", &a, &b, &c, &d);
-  return a << 24 | b << 16 | c << 8 | d;
-}
-
-/// Cycles of the radars are evenly apart.
-std::filesystem::path write_load(const Load& load, const VehicleConfig& vehicle, double ego_speed_mps) {
-  const bench::CrowdedRoad road(ego_speed_mps, load.detections);
-  const std::filesystem::path file = "/tmp/load.pcap";
-  simulator::wire::PcapWriter pcap(file);
-  const auto scan = std::make_unique<RadarScan>();
-  const auto bytes = std::make_unique<simulator::wire::Ars548List>();
-  const auto cycles = static_cast<std::uint32_t>(load.seconds * 1e9 / static_cast<double>(kCycle_ns));
-  for (std::uint32_t i = 0; i < cycles * load.radars; ++i) {
-    const RadarConfig& radar = vehicle.radars[i % load.radars];
-    const std::int64_t since_start_ns = i * (kCycle_ns / load.radars), time_ns = kEpoch_ns + since_start_ns;
-    road.measure(radar, 1e-9 * static_cast<double>(since_start_ns), i / load.radars, *scan);
-    simulator::wire::encode_ars548(*scan, time_ns, *bytes);
-    pcap.write(time_ns, {ipv4(radar.source.sender), radar.source.port}, {ipv4(radar.source.address), radar.source.port},
-               *bytes);
-  }
-  return file;
-}
 
 void print(const char* what, const std::vector<double>& ns) {
   std::printf("%-34s %9.0f %9.0f %9.0f %9.0f\n", what, bench::mean(ns) * 1e-3, bench::quantile(ns, 0.5) * 1e-3,
@@ -103,7 +75,9 @@ int run(const Load& load) {
   const VehicleConfig vehicle = config::read_vehicle_file(config / "vehicle" / "bench.toml");
   const simulator::Scenario scenario = simulator::scenario("straight_rail");
   const auto ego = harness::simulated_drive(load.seconds, scenario.name).back();
-  const auto scans = write_load(load, vehicle, scenario.ego.speed_mps.front().value);
+  const std::filesystem::path scans = "/tmp/load.pcap";
+  bench::write_recording(bench::CrowdedRoad(scenario.ego.speed_mps.front().value, load.detections), vehicle,
+                         load.seconds, scans);
   const std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan), sizeof(ClassifiedScan)};
 
   std::vector<double> total, ipc;
@@ -142,8 +116,8 @@ int run(const Load& load) {
   print("between the processes (IPC)", ipc);
   print("total: first datagram to track list", total);
   if (!load.is_default()) return 0;
-  const auto bare =
-      bench::bare_chain(chunks, kCycle_ns / load.radars, static_cast<std::size_t>(load.seconds * 20.0 * load.radars));
+  const auto bare = bench::bare_chain(chunks, bench::kCycle_ns / load.radars,
+                                      static_cast<std::size_t>(load.seconds * 20.0 * load.radars));
   if (bare.empty()) return 1;
   print("bare iceoryx chain, same hops", bare);
   std::printf("IPC share / bare chain at p50: %.2f (at most 1.3)\n",

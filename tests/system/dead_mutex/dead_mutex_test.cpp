@@ -64,7 +64,7 @@ TEST(DeadMutex, DomainIsBackWithinTwoSecondsOfTheKill) {
     const double ready_s = seconds_between(killed_ns, runtime::monotonic_now_ns());
     EXPECT_LT(ready_s, kLimit_s);
     EXPECT_EQ(supervisor.domain_restarts(), restarts + 1);
-    EXPECT_THAT(last_restart(supervisor), ::testing::HasSubstr("waits for a mutex"));
+    EXPECT_THAT(last_restart(supervisor), ::testing::HasSubstr("waits for a mutex of an ended process"));
     Observer observer("-" + std::to_string(kills));
     ASSERT_TRUE(domain.until(5.0, [&] { return !observer.of(TopicId::kClassifiedScan).empty(); }));
     const double data_s = seconds_between(killed_ns, observer.of(TopicId::kClassifiedScan).front()->received_ns);

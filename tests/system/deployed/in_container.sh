@@ -66,6 +66,7 @@ for service in "${services[@]}"; do
 done
 stranger_is_shut_out() { ! setpriv --reuid nobody --regid nogroup --clear-groups sh -c 'exec 3</dev/shm/iceoryx_mgmt' 2>/dev/null; }
 check "a user of another group may not open the management memory" stranger_is_shut_out
+check "RouDi's wrapper sees for what RouDi waits" sh -c '! journalctl -b -u boresight-roudi | grep -q "does not show"'
 has_no_capability() { ! grep -q '^CapEff:.*[1-9a-f]' "/proc/$(broker)/status"; }
 check "RouDi has no capability" has_no_capability
 
@@ -159,12 +160,32 @@ cp /tmp/whole.toml "$configuration"
 systemctl start boresight-ghost_filter.service
 check "mended, it is started by hand" within 5 systemctl is-active -q boresight-ghost_filter.service
 
+# A service on the data path that is not ready in time restarts the domain, also if every command takes a second. Drop-ins
+# replace its program, and the path on which the unit finds systemctl.
+mkdir -p /run/systemd/system/boresight-tracker.service.d
+printf '[Service]\nExecStart=\nExecStart=/bin/sleep 100\nTimeoutStartSec=1\nEnvironment=PATH=%s:/usr/bin:/bin\n' \
+  /usr/local/lib/boresight-test/slow > /run/systemd/system/boresight-tracker.service.d/late.conf
+systemctl daemon-reload
+roudi=$(pid_of roudi)
+gateway=$(pid_of ingest_gateway)
+systemctl --no-block restart boresight-tracker.service
+check "a service on the data path that is not ready in time restarts RouDi on a slow machine, too" \
+  within 15 is_new roudi "$roudi"
+check "and with it the domain" within 10 is_new ingest_gateway "$gateway"
+# Stopped as a whole: a command of the last failure may still run.
+systemctl stop boresight.target
+rm -r /run/systemd/system/boresight-tracker.service.d
+systemctl daemon-reload
+systemctl start boresight.target
+check "with its own program the domain works" within 15 alive tracker
+
 # A service off the data path that is not ready in time costs nobody else. A drop-in replaces its program.
 mkdir -p /run/systemd/system/boresight-health.service.d
 printf '[Service]\nExecStart=\nExecStart=/bin/sleep 100\nTimeoutStartSec=1\n' \
   > /run/systemd/system/boresight-health.service.d/late.conf
 systemctl daemon-reload
 roudi=$(pid_of roudi)
+tracker=$(pid_of tracker)
 systemctl --no-block restart boresight-health.service
 restarted_thrice() { [ "$(systemctl show -P NRestarts boresight-health.service)" -ge 3 ]; }
 check "a service off the data path that is not ready in time is started again" within 10 restarted_thrice

@@ -40,6 +40,9 @@ BORESIGHT_REPLAY_ARGS=$recordings
 EOF
 install -D -m 644 -t "$root/usr/local/lib/boresight-test" "$here/checks.sh"
 install -m 755 "$here/in_container.sh" "$root/usr/local/bin/deployed-test"
+install -d "$root/usr/local/lib/boresight-test/slow"
+printf '#!/bin/sh\nsleep 1\nexec /usr/bin/systemctl "$@"\n' > "$root/usr/local/lib/boresight-test/slow/systemctl"
+chmod 755 "$root/usr/local/lib/boresight-test/slow/systemctl"
 install -m 755 "$build/bin/deployed_impostor" "$root/usr/local/bin/deployed-impostor"
 cat > "$root/etc/systemd/system/deployed-test.service" <<'EOF'
 # Not named boresight-…, as the restrictions of these units would apply.

@@ -15,7 +15,7 @@ import tempfile
 import pages
 
 PAGES = ("README.md", "docs/quick-start.md", "docs/test-engineer.md", "docs/integrator.md", "docs/diagnosis-engineer.md",
-         "docs/troubleshooting.md", "docs/CHANGELOG.md", "docs/architecture.md", "docs/decisions.md", "docs/dds.md")
+         "docs/operations.md", "docs/troubleshooting.md", "docs/CHANGELOG.md", "docs/architecture.md", "docs/decisions.md", "docs/dds.md")
 WITHOUT_COMMANDS = ("docs/CHANGELOG.md", "docs/architecture.md", "docs/decisions.md", "docs/dds.md")
 PAGE_OF_MESSAGES = "docs/troubleshooting.md"
 PROGRAMS = ("services", "deploy", "interfaces")

@@ -1,13 +1,17 @@
 // How services end: the exit code and the reason in the log.
 #include "services/common/runtime/exit_codes.hpp"
 
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <iceoryx_hoofs/error_handling/error_handling.hpp>
+#include <unistd.h>
 
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/service_main.hpp"
@@ -62,6 +66,39 @@ TEST_F(ExitCode, IsSeventyForAnUnrecoverableErrorOfTheMiddlewareWithItsName) {
   });
   EXPECT_EQ(service.wait_for(5.0), exit_code::kMiddleware);
   EXPECT_NE(logged().find("CONDITION_NOTIFIER_SEMAPHORE_CORRUPT_IN_NOTIFY"), std::string::npos) << logged();
+}
+
+/// A service that waits for ever after the stop signal.
+int hang(runtime::Node& node) {
+  static_cast<void>(node.spin());
+  for (;;) pause();
+}
+
+/// The exit code of such a service after SIGTERM, and nothing if it does not end within a second.
+std::optional<int> end_of_hanging_service(const char* stop_limit_ms) {
+  std::remove(kLog);  // of an earlier test
+  if (stop_limit_ms != nullptr) setenv("BORESIGHT_STOP_LIMIT_MS", stop_limit_ms, 1);
+  auto service = tracker(hang);
+  unsetenv("BORESIGHT_STOP_LIMIT_MS");
+  EXPECT_TRUE(harness::eventually(5.0, [] { return logged().find("started") != std::string::npos; })) << logged();
+  service.send(SIGTERM);
+  return service.wait_for(1.0);
+}
+
+TEST_F(ExitCode, IsThatOfSigkillIfAStoppedServiceDoesNotEndWithinItsLimit) {
+  EXPECT_EQ(end_of_hanging_service("200"), -SIGKILL);
+}
+
+TEST_F(ExitCode, IsAwaitedWithoutALimitOfTheServiceManager) {
+  EXPECT_EQ(end_of_hanging_service(nullptr), std::nullopt);
+}
+
+TEST_F(ExitCode, IsTwoForALimitThatIsNoNumber) {
+  setenv("BORESIGHT_STOP_LIMIT_MS", "0.5", 1);
+  auto service = tracker([](runtime::Node& node) { return node.spin(); });
+  unsetenv("BORESIGHT_STOP_LIMIT_MS");
+  EXPECT_EQ(service.wait_for(5.0), exit_code::kUsage);
+  EXPECT_NE(logged().find("BORESIGHT_STOP_LIMIT_MS=0.5: must be a whole number"), std::string::npos) << logged();
 }
 
 }  // namespace

@@ -81,6 +81,8 @@ std::vector<double> numbers(const Settings& s) {
       w.drift_span_s,
       w.body_pitch_std_rad,
       w.side_slip_std_rad,
+      r.doubt_s,
+      r.stop_s,
       r.rotation_std_rad,
       r.rate_scale_std,
       r.speed_scale_std,

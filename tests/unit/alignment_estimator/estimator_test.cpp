@@ -58,6 +58,30 @@ TEST(Estimator, EachRadarHasItsOwnEstimate) {
   EXPECT_FALSE(estimator.write(3, out));
 }
 
+TEST(Estimator, LearnsNothingFromAScanThatIsProvenWrong) {
+  for (const std::uint16_t fault : {scan_integrity::kRepeated, scan_integrity::kFrozen, scan_integrity::kContradictsEgo,
+                                    scan_integrity::kImpossibleCopies}) {
+    SyntheticDrive left, right;
+    Estimator estimator(car(left, right), Config{});
+    Synthesizer a(left, 1);
+    AlignmentEstimate before{};
+    for (int i = 0; i < 400; ++i) {
+      a.next();
+      estimator.add_ego_motion(motion(a.scan->header.measurement_time_ns, a.ego));
+      if (i == 200) before = written(estimator, 1);
+      if (i >= 200) {
+        a.scan->integrity = fault;
+        for (std::size_t k = 0; k < a.scan->number_of_valid_detections; ++k) a.scan->azimuth_rad[k] += 0.05F;
+      }
+      static_cast<void>(estimator.add_scan(*a.scan));
+    }
+    const AlignmentEstimate after = written(estimator, 1);
+    EXPECT_EQ(after.kpis.scans_used, before.kpis.scans_used) << fault;
+    EXPECT_EQ(after.alignment_yaw_rad, before.alignment_yaw_rad) << fault;
+    EXPECT_EQ(after.covariance, before.covariance) << fault;
+  }
+}
+
 TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
   SyntheticDrive left, right;
   left.yaw_rad = 2.0 * kRadiansPerDegree;

@@ -1,13 +1,20 @@
 // Whether RouDi hangs, judged from what the kernel reports of its threads.
 #include <csignal>
+#include <map>
+#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "deploy/broker/judgement/broker_progress.hpp"
+#include "deploy/broker/judgement/mutex_wait.hpp"
+#include "deploy/broker/judgement/progress_limits.hpp"
 #include "deploy/broker/judgement/thread_activity.hpp"
 
 namespace boresight::broker {
@@ -53,10 +60,45 @@ TEST_F(BrokerProgressTest, RoudiAtWorkIsNotHung) {
 
 TEST_F(BrokerProgressTest, BothThreadsInADeadMutexAreHungAfterTheLimit) {
   watch_at_work(kSecond_ns);
-  watch(kAsleepLimit_ns - kObservationPeriod_ns, [](int) {});
+  watch(ProgressLimits{}.asleep_ns - kObservationPeriod_ns, [](int) {});
   EXPECT_EQ(progress_.hung(), std::nullopt);
   watch(kObservationPeriod_ns, [](int) {});
-  EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr("waits for a mutex since 0.5 s"));
+  EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr("waits for a mutex, or sleeps, since 0.5 s"));
+}
+
+TEST_F(BrokerProgressTest, ThreadInAMutexOfAnEndedProcessIsHungAfterTheSameLimit) {
+  watch_at_work(kSecond_ns);
+  message_.wait = Wait::kMutexOfTheDead;
+  watch(ProgressLimits{}.asleep_ns, [](int) {});
+  EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr("waits for a mutex of an ended process since 0.5 s"));
+}
+
+TEST_F(BrokerProgressTest, ThreadInAMutexOfALivingProcessMayBeStarvedUntilTheLongerLimit) {
+  watch_at_work(kSecond_ns);
+  message_.wait = discovery_.wait = Wait::kMutexOfAnother;
+  watch(ProgressLimits{}.starved_ns - kObservationPeriod_ns, [](int) {});
+  EXPECT_EQ(progress_.hung(), std::nullopt);
+  watch(kObservationPeriod_ns, [](int) {});
+  EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr("waits for a mutex of a living process since 2.5 s"));
+}
+
+TEST_F(BrokerProgressTest, EndOfTheOwnerOfAMutexCountsAtOnce) {
+  watch_at_work(kSecond_ns);
+  message_.wait = discovery_.wait = Wait::kMutexOfAnother;
+  watch(kSecond_ns, [](int) {});
+  EXPECT_EQ(progress_.hung(), std::nullopt);
+  message_.wait = Wait::kMutexOfTheDead;
+  watch(kObservationPeriod_ns, [](int) {});
+  EXPECT_NE(progress_.hung(), std::nullopt);
+}
+
+TEST_F(BrokerProgressTest, ThreadThatOversleepsItsTimerIsNotHungBeforeTheLongerLimit) {
+  watch_at_work(kSecond_ns);
+  message_.wait = discovery_.wait = Wait::kOther;
+  watch(ProgressLimits{}.starved_ns - kObservationPeriod_ns, [](int) {});
+  EXPECT_EQ(progress_.hung(), std::nullopt);
+  watch(kObservationPeriod_ns, [](int) {});
+  EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr(" sleeps since 2.5 s"));
 }
 
 TEST_F(BrokerProgressTest, OneThreadInADeadMutexIsEnough) {
@@ -68,6 +110,7 @@ TEST_F(BrokerProgressTest, OneThreadInADeadMutexIsEnough) {
 TEST_F(BrokerProgressTest, StoppedRoudiIsHung) {
   watch_at_work(kSecond_ns);
   for (ThreadActivity* thread : {&other_, &message_, &discovery_}) thread->state = ThreadState::kStopped;
+  message_.wait = Wait::kMutexOfAnother;  // at the moment of the stop
   watch(kSecond_ns, [](int) {});
   EXPECT_THAT(progress_.hung().value_or(""), ::testing::HasSubstr("is stopped since"));
 }
@@ -96,7 +139,7 @@ TEST_F(BrokerProgressTest, ThreadThatWaitsForADiskIsNotHung) {
 TEST_F(BrokerProgressTest, ThreadThatSpinsIsHung) {
   watch_at_work(kSecond_ns);
   message_.state = ThreadState::kRunnable;
-  watch(kBusyLimit_ns + 2 * kObservationPeriod_ns, [this](int turn) {
+  watch(ProgressLimits{}.busy_ns + 2 * kObservationPeriod_ns, [this](int turn) {
     if (turn % 2 == 0) ++discovery_.voluntary_switches;
     message_.processor_time_ns += kObservationPeriod_ns;
   });
@@ -108,6 +151,14 @@ TEST_F(BrokerProgressTest, TimeThatTheObserverMissedDoesNotCount) {
   time_ns_ += 100 * kSecond_ns;
   progress_.observe(time_ns_, {other_, message_, discovery_});
   EXPECT_EQ(progress_.hung(), std::nullopt);
+}
+
+TEST_F(BrokerProgressTest, SaysWhetherTheKernelShowsForWhatAThreadWaits) {
+  watch_at_work(kSecond_ns);
+  EXPECT_FALSE(progress_.sees_waits());
+  message_.wait = discovery_.wait = Wait::kOther;
+  watch_at_work(kSecond_ns);
+  EXPECT_TRUE(progress_.sees_waits());
 }
 
 TEST_F(BrokerProgressTest, UnknownThreadsAreNotJudged) {
@@ -144,6 +195,110 @@ TEST(ThreadActivityText, OfAStoppedProcessIsStopped) {
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_TRUE(read_activity(child).empty());
+}
+
+/// A mutex that processes share.
+class SharedMutex {
+ public:
+  SharedMutex()
+      : mutex_(static_cast<pthread_mutex_t*>(
+            mmap(nullptr, sizeof(pthread_mutex_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {
+    pthread_mutexattr_t kind;
+    pthread_mutexattr_init(&kind);
+    pthread_mutexattr_setpshared(&kind, PTHREAD_PROCESS_SHARED);
+    pthread_mutexattr_settype(&kind, PTHREAD_MUTEX_RECURSIVE);  // as iceoryx's
+    pthread_mutex_init(mutex_, &kind);
+  }
+  ~SharedMutex() { munmap(mutex_, sizeof(pthread_mutex_t)); }
+  SharedMutex(const SharedMutex&) = delete;
+  SharedMutex& operator=(const SharedMutex&) = delete;
+  void lock() { pthread_mutex_lock(mutex_); }
+  /// Locked by another, and somebody waits: true within five seconds.
+  [[nodiscard]] bool is_waited_for() const {
+    const volatile int* const word = &mutex_->__data.__lock;
+    for (int i = 0; i < 500 && *word != 2; ++i) usleep(10'000);
+    return *word == 2;
+  }
+
+ private:
+  pthread_mutex_t* mutex_;
+};
+
+/// Forks, calls `work` in the child, which then sleeps until it is killed.
+template <typename Work>
+pid_t forked(const Work& work) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  work();
+  for (;;) pause();
+}
+
+void end(pid_t child) {
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
+/// What the only thread of a child waits for, once the kernel shows it asleep.
+Wait wait_of_child(pid_t child) {
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<ThreadActivity> threads = read_activity(child);
+    if (threads.size() == 1 && threads[0].state == ThreadState::kSleeping) return threads[0].wait;
+    usleep(10'000);
+  }
+  return Wait::kUnknown;
+}
+
+TEST(ThreadActivityWait, IsForAMutexWhoseOwnerLivesAndThenHasEnded) {
+  SharedMutex mutex;
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t owner = forked([&] {
+    mutex.lock();
+    static_cast<void>(!write(pipe_ends[1], "x", 1));
+  });
+  char locked = 0;
+  ASSERT_EQ(read(pipe_ends[0], &locked, 1), 1);
+  const pid_t waiting = forked([&] { mutex.lock(); });
+  EXPECT_TRUE(mutex.is_waited_for());
+  EXPECT_EQ(wait_of_child(waiting), Wait::kMutexOfAnother);
+  end(owner);
+  EXPECT_EQ(wait_of_child(waiting), Wait::kMutexOfTheDead);
+  end(waiting);
+  for (const int descriptor : pipe_ends) close(descriptor);
+}
+
+TEST(ThreadActivityWait, OfAThreadThatPausesIsForSomethingElse) {
+  const pid_t child = forked([] {});
+  EXPECT_EQ(wait_of_child(child), Wait::kOther);
+  end(child);
+}
+
+TEST(MutexWaitText, IsAWaitOfTheLibraryForAContendedMutexOnly) {
+  const std::string futex = std::to_string(SYS_futex);
+  const auto shared = parse_mutex_wait(futex + " 0x7fff10 0x0 0x2 0x0 0x0 0x0 0x7ffc 0x7f00\n");
+  ASSERT_TRUE(shared);
+  EXPECT_EQ(shared->address, 0x7fff10U);
+  EXPECT_TRUE(parse_mutex_wait(futex + " 0x7fff10 0x80 0x2 0x0")) << "private to the process";
+  EXPECT_FALSE(parse_mutex_wait(futex + " 0x7fff10 0x189 0x0 0x7ffc"))
+      << "a semaphore or a condition with a time limit";
+  EXPECT_FALSE(parse_mutex_wait("1 0x7fff10 0x0 0x2 0x0")) << "another call";
+  EXPECT_FALSE(parse_mutex_wait("running\n"));
+  EXPECT_FALSE(parse_mutex_wait(""));
+}
+
+TEST(ProgressLimitsText, IsReadFromTheEnvironment) {
+  const std::map<std::string, const char*> variables = {{"BORESIGHT_ROUDI_ASLEEP_LIMIT_MS", "800"},
+                                                        {"BORESIGHT_ROUDI_STARVED_LIMIT_MS", "9000"}};
+  const ProgressLimits limits = limits_of([&](const char* name) {
+    const auto found = variables.find(name);
+    return found == variables.end() ? nullptr : found->second;
+  });
+  EXPECT_EQ(limits.asleep_ns, 800'000'000);
+  EXPECT_EQ(limits.starved_ns, 9'000'000'000);
+  EXPECT_EQ(limits.busy_ns, ProgressLimits{}.busy_ns);
+  for (const char* const wrong : {"", "99", "3600001", "1 s", "0.5", "-1"}) {
+    EXPECT_THROW(static_cast<void>(limits_of([wrong](const char*) { return wrong; })), std::invalid_argument) << wrong;
+  }
 }
 
 }  // namespace

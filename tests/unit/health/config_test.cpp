@@ -95,6 +95,7 @@ TEST(HealthConfig, TheShippedFileHasTheDefaults) {
   EXPECT_THAT(read.dds.interfaces, testing::ElementsAre("127.0.0.1")) << "no other machine can listen";
   EXPECT_TRUE(read.level_store.enabled);
   EXPECT_EQ(read.level_store.path, "");
+  EXPECT_EQ(read.level_store.first_write_s, LevelStoreConfig().first_write_s);
   EXPECT_EQ(read.level_store.write_period_s, LevelStoreConfig().write_period_s);
   EXPECT_EQ(read.dds.command_key_file, "") << "nobody may command unless the integrator wants it";
   const dds::SecurityConfig security;

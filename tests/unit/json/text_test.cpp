@@ -23,6 +23,17 @@ TEST(JsonText, NamesKeepBlanksQuotesAndLettersAndDamagedBytesAreReplaced) {
   EXPECT_EQ(Value::parse(text).at("name").get<std::string>(), name);
 }
 
+TEST(JsonText, ControlCharactersAreEscapedAndTheValueStaysTheSame) {
+  // CSI, which begins a command of a terminal; next line; delete; right-to-left override. No control: no-break space.
+  const std::string name =
+      "a\xC2\x9B"
+      "31m\xC2\x85\x7F\xE2\x80\xAE\xC2\xA0ü";
+  const std::string text = line({{"name", name}});
+  EXPECT_EQ(text, "{\"name\":\"a\\u009b31m\\u0085\\u007f\\u202e\xC2\xA0ü\"}\n");
+  EXPECT_EQ(Value::parse(text).at("name").get<std::string>(), name);
+  EXPECT_EQ(document({{"\xC2\x80", 1}}), "{\n  \"\\u0080\": 1\n}\n");
+}
+
 TEST(JsonText, KeysStayInTheOrderInWhichTheyWereAdded) {
   Value value;
   value["z"] = 1;

@@ -57,11 +57,7 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
 
 void GraduatedStart::begin(const StartPrior& prior) {
   prior_ = prior;
-  point_ = {};
-  point_.speed_scale = prior.speed_scale;
-  point_.sensor_to_vehicle = prior.sensor_to_vehicle;
-  point_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
-  point_.slip_radps2pm = prior.slip_radps2pm;
+  point_ = prior.point;
   off_.setZero();
   scale_mps_ = config_.start_scale_mps;
 }

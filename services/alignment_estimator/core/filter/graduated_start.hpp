@@ -19,12 +19,9 @@ namespace boresight::alignment {
 
 /// Start and extent of the search.
 struct StartPrior {
-  double speed_scale = 1.0;
+  windows::Point point;
   double speed_scale_variance = 1.0;
-  Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   double rotation_variance = 1.0;
-  double yaw_rate_bias_radps = 0.0;
-  double slip_radps2pm = 0.0;
   double log_angle_noise_std = 0.0;  ///< of ln(real / assumed variance of the angles)
 };
 

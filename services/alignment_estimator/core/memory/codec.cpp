@@ -158,6 +158,8 @@ std::size_t encode_memory(const Memory& memory, const Identity& identity, Memory
   writer.u64(identity.vehicle);
   writer.u32(static_cast<std::uint32_t>(memory.number_of_radars));
   writer.u32(0);
+  writer.u64(memory.boot);
+  writer.u64(static_cast<std::uint64_t>(memory.since_boot_ns));
   const auto write = [&writer](double value) { writer.f64(value); };
   visit_vehicle(memory, write);
   write_triangle(memory.covariance, Memory::kShared, writer);
@@ -189,6 +191,8 @@ MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity&
   if (vehicle != identity.vehicle) return MemoryVerdict::kForeign;
   Memory m;
   m.number_of_radars = radars;
+  m.boot = reader.u64();
+  m.since_boot_ns = static_cast<std::int64_t>(reader.u64());
   const auto read = [&reader](double& value) { value = reader.f64(); };
   visit_vehicle(m, read);
   read_triangle(reader, Memory::kShared, m.covariance);

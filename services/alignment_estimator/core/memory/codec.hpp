@@ -1,5 +1,6 @@
 // Memory ↔ bytes. Layout, little-endian, all numbers f64 but the first ones: "BORALIGN", version (u32), length of all
-// (u32), fingerprint of the vehicle (u64), number of radars (u32), reserved (u32); of the vehicle k_v, yaw-rate bias,
+// (u32), fingerprint of the vehicle (u64), number of radars (u32), reserved (u32), boot (u64), ns since it (i64);
+// of the vehicle k_v, yaw-rate bias,
 // yaw-rate gain, slip coefficient, pitch per acceleration, time offset, load pitch, three fluctuation variances, three
 // correlation times, upper triangle of the covariance row by row; per radar id (u32), flags (u32, bit 0: measures
 // elevation), fingerprint (u64), rotation about x, y, z, range-rate scale, time offset, position x and y, azimuth
@@ -17,8 +18,8 @@
 
 namespace boresight::alignment {
 
-inline constexpr std::uint32_t kMemoryVersion = 3;
-inline constexpr std::size_t kMemoryHeaderBytes = 32;
+inline constexpr std::uint32_t kMemoryVersion = 4;
+inline constexpr std::size_t kMemoryHeaderBytes = 48;
 inline constexpr std::size_t kMemoryVehicleBytes =
     8 * (7 + 2 * windows::kFluctuations + Memory::kShared * (Memory::kShared + 1) / 2);
 inline constexpr std::size_t kMemoryRadarBytes =

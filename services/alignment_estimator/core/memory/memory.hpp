@@ -50,6 +50,9 @@ struct Memory {
   };
 
   std::size_t number_of_radars = 0;
+  /// When it was written: the machine's boot (0: not known), and the time since then. Written by whoever stores it.
+  std::uint64_t boot = 0;
+  std::int64_t since_boot_ns = 0;
   double speed_scale = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double yaw_rate_gain = 0.0;

@@ -228,7 +228,7 @@ void PublishedMethod::save(Memory& memory) const {
   }
 }
 
-void PublishedMethod::restore(const Memory& memory) {
+void PublishedMethod::restore(const Memory& memory, double /*away_s*/) {
   if (memory.number_of_radars != radars_.size()) return;
   if (std::abs(memory.speed_scale - 1.0) <= config_.max_speed_scale_error) speed_scale_ = memory.speed_scale;
   for (std::size_t r = 0; r < radars_.size(); ++r) {

@@ -54,7 +54,7 @@ class PublishedMethod : public Method {
   void save(Memory& memory) const final;
   /// Starts from the stored angles of radars with the same identity. The stored covariance is not used, because these
   /// methods do not weight by it.
-  void restore(const Memory& memory) final;
+  void restore(const Memory& memory, double away_s) final;
   /// Starts this radar from the angles of a static calibration. Their covariance counts in estimate() like that of one
   /// more scan and fades with the window, since the steps do not weight by it. A method of azimuth only refuses,
   /// because it has no pitch.

@@ -6,9 +6,14 @@
 
 namespace boresight::alignment::windows {
 
-/// Added to a memory from an earlier drive, beside what its fluctuations may have done since: the car may have been
-/// repaired. Choice: a memory that doubts more costs seconds of driving, one that doubts less is wrong after a repair.
+/// Added to a memory of unknown age, beside what its fluctuations may have done since: the car may have been repaired.
+/// Choice: a memory that doubts more costs seconds of driving, one that doubts less is wrong after a repair.
 struct RestoreConfig {
+  /// A memory that was written t seconds ago gets 1 − exp(−t/doubt_s) of these variances. Choice: a workshop turns a
+  /// radar or changes tyres in ten minutes; a service that was restarted was away for a second.
+  double doubt_s = 600.0;
+  /// The load may have changed while nobody looked for this long (choice: to stop, to get in or out, to drive on).
+  double stop_s = 20.0;
   double rotation_std_rad = 0.00175;  ///< 0.1°
   double rate_scale_std = 3e-4;
   double speed_scale_std = 0.003;  ///< tyres and their pressure

@@ -120,13 +120,14 @@ AlignmentReason WindowedFilter::reason_of(std::size_t index) const {
 void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, double elapsed_s) {
   Radar& radar = radars_[index];
   StartPrior prior;
-  const SharedState& shared = solver_.shared();
-  prior.speed_scale = shared.speed_scale;
+  prior.point = solver_.point(index, driven_s_, load_);
   prior.speed_scale_variance = std::max(square(priors_.speed_scale_std), 1e-10);
-  prior.sensor_to_vehicle = solver_.radar(index).state.sensor_to_vehicle;
   prior.rotation_variance = square(priors_.rotation_std_rad);
   prior.log_angle_noise_std = config_.prior_angle_noise_log_std;
-  const auto verdict = radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, prior,
+  ScanMotion3d then = motion;
+  then.speed_mps += prior.point.stamp_s * motion.acceleration_mps2;
+  then.yaw_rate_radps += prior.point.stamp_s * motion.yaw_acceleration_radps2;
+  const auto verdict = radar.start.add(sightings_, radar.config.mounting_pose.position_m, then, elapsed_s, prior,
                                        radar.sums.learnt().noise.angle_variance_factor());
   if (verdict != GraduatedStart::Verdict::kFound) return;
   const StartResult& found = radar.start.result();
@@ -134,11 +135,14 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   for (const Radar& other : radars_) first = first && !other.running;
   if (sightings_.has_elevation != solver_.radar(index).has_elevation) {
     set_has_elevation(index, sightings_.has_elevation);
-  } else if (radar.remembered && contradicts_memory(index, found)) {
+  } else if (radar.remembered && contradicts_memory(index, found, then)) {
     solver_.forget_rotation(index, radar.nominal);
+    radar.contradicted = true;
   }
-  solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
-  if (first) solver_.shared().speed_scale = found.speed_scale;
+  // Half a second of driving tells less than a memory.
+  const bool begins_anew = !radar.remembered || radar.contradicted;
+  if (begins_anew) solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
+  if (first && begins_anew) solver_.shared().speed_scale = found.speed_scale;
   radar.running = true;
   radar.linearised = solver_.point(index, driven_s_, load_).sensor_to_vehicle;
   radar.linearised_speed_scale = solver_.shared().speed_scale;

@@ -28,7 +28,7 @@ class WindowedFilter : public Method {
   void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
                std::span<double> out) const override;
   void save(Memory& memory) const override;
-  void restore(const Memory& memory) override;
+  void restore(const Memory& memory, double away_s) override;
   bool seed(std::size_t radar, const Eigen::Vector3d& rotation_vehicle_rad, const Eigen::Matrix3d& covariance) override;
 
   [[nodiscard]] const windows::Solver& solver() const { return solver_; }
@@ -50,7 +50,8 @@ class WindowedFilter : public Method {
     Eigen::Matrix3d linearised;
     double linearised_speed_scale = 1.0;
     bool running = false;
-    bool remembered = false;  ///< begins from a memory or a static calibration
+    bool remembered = false;    ///< begins from a memory or a static calibration
+    bool contradicted = false;  ///< its first scans showed another rotation than the memory
     AlignmentState state = AlignmentState::kNoData;
     AlignmentReason reason = AlignmentReason::kTooFewDetections;
     std::int64_t last_time_ns = 0;
@@ -69,7 +70,14 @@ class WindowedFilter : public Method {
   /// Begins again with the prior of a radar with or without elevations; a remembered yaw stays.
   void set_has_elevation(std::size_t radar, bool has_elevation);
   /// Whether the first scans show another yaw or pitch than the memory: the car may have been repaired.
-  [[nodiscard]] bool contradicts_memory(std::size_t radar, const StartResult& found) const;
+  [[nodiscard]] bool contradicts_memory(std::size_t radar, const StartResult& found, const ScanMotion3d& motion) const;
+  /// Widens what was restored of a radar by its fluctuations.
+  void allow_fluctuations(std::size_t radar);
+  /// Writes the present state, with covariances that need no correlations.
+  void save_present(Memory& memory) const;
+  /// Whether what the process began with is still true of this radar, and tells more than its present state.
+  [[nodiscard]] bool keeps_restored(std::size_t radar, const Memory::Radar& present) const;
+  [[nodiscard]] bool keeps_restored_vehicle(const Memory& present) const;
   void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
   void update(std::size_t radar, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s);
   /// Makes the next step of the solution.
@@ -99,6 +107,7 @@ class WindowedFilter : public Method {
   windows::Segments segments_;
   windows::ChangeConfig change_config_;
   windows::RestoreConfig restore_config_;
+  Memory restored_;  ///< as it began, with its doubts; no radars: none
   windows::ChangeMonitor changes_;
   windows::CommonWatch load_watch_, speed_watch_;
   std::vector<windows::Deviation2> deviations_;

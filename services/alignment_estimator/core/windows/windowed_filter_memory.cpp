@@ -73,7 +73,7 @@ void doubt(const Vector& prior_stds, const Vector& variances, Matrix& covariance
 /// C + B·S·Bᵀ for the covariance of each of n radars and S for that of the shared parameters, the covariances
 /// C + (n + 1)·B·S·Bᵀ and (n + 1)·S without correlations claim nothing that the joint covariance does not:
 /// (n + 1)·(x₀² + … + x_n²) ≥ (x₀ + … + x_n)².
-void WindowedFilter::save(Memory& memory) const {
+void WindowedFilter::save_present(Memory& memory) const {
   memory = {};
   memory.number_of_radars = radars_.size();
   // A load change that is not decided yet does not count.
@@ -123,9 +123,51 @@ void WindowedFilter::save(Memory& memory) const {
   }
 }
 
-void WindowedFilter::restore(const Memory& memory) {
+bool WindowedFilter::keeps_restored(std::size_t index, const Memory::Radar& present) const {
+  const Radar& radar = radars_[index];
+  if (index >= restored_.number_of_radars || !radar.remembered || radar.step_change.count > 0) return false;
+  if (radar.contradicted && radar.state == AlignmentState::kConverged) return false;
+  const Memory::Radar& before = restored_.radars[index];
+  const auto is_worse = [&](std::size_t axis) {
+    return present.rotation_variance(axis, axis) > before.rotation_variance(axis, axis);
+  };
+  return is_worse(1) || is_worse(2);
+}
+
+bool WindowedFilter::keeps_restored_vehicle(const Memory& present) const {
+  if (restored_.number_of_radars == 0 || load_change_.count + speed_change_.count > 0) return false;
+  double gained = 0.0;
+  for (std::size_t i = 0; i < Memory::kShared; ++i) {
+    const double before = restored_.variance(i, i), now = present.variance(i, i);
+    if (before > 0.0 && now > 0.0) gained += std::log(before / now);
+  }
+  return gained < 0.0;
+}
+
+/// The factor n + 1 is paid once a drive, not at every restart: what the drive began with is passed on until the
+/// present state tells more in spite of it. It is as true as it was, because nothing has contradicted it.
+void WindowedFilter::save(Memory& memory) const {
+  save_present(memory);
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (!keeps_restored(r, memory.radars[r])) continue;
+    memory.radars[r] = restored_.radars[r];
+    memory.radars[r].seconds_of_drive = radars_[r].seconds_of_drive;
+  }
+  if (keeps_restored_vehicle(memory)) {
+    memory.speed_scale = restored_.speed_scale;
+    memory.yaw_rate_bias_radps = restored_.yaw_rate_bias_radps;
+    memory.yaw_rate_gain = restored_.yaw_rate_gain;
+    memory.slip_coefficient_radps2pm = restored_.slip_coefficient_radps2pm;
+    memory.pitch_per_acceleration_radps2pm = restored_.pitch_per_acceleration_radps2pm;
+    memory.time_offset_s = restored_.time_offset_s;
+    memory.covariance = restored_.covariance;
+  }
+}
+
+void WindowedFilter::restore(const Memory& memory, double away_s) {
   const SharedVector shared_stds = shared_prior_stds(priors_);
   const RestoreConfig& doubts = restore_config_;
+  const double doubted = 1.0 - std::exp(-std::max(away_s, 0.0) / doubts.doubt_s);
   // Constants of the vehicle. What the method did not estimate, or does not any more, keeps its nominal value.
   SharedState constants;
   SharedRows of_vehicle = Eigen::Map<const SharedRows>(memory.covariance.data());
@@ -152,6 +194,7 @@ void WindowedFilter::restore(const Memory& memory) {
   }
   SharedVector more = (doubts.vehicle_share * shared_stds).cwiseAbs2();
   more(shared::kSpeedScale) = square(doubts.speed_scale_std);
+  more *= doubted;
   doubt(shared_stds, more, of_vehicle);
   constants.first_load_rad = std::isfinite(memory.load_pitch_rad) ? memory.load_pitch_rad : 0.0;
   Fluctuation common = solver_.common();
@@ -163,7 +206,6 @@ void WindowedFilter::restore(const Memory& memory) {
     correlation_s[k] = memory.correlation_s[k] > 0.0 ? memory.correlation_s[k] : solver_.correlation_s(k);
   }
   solver_.restore(constants, of_vehicle, common, correlation_s);
-  const auto number = static_cast<double>(radars_.size());
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     Radar& radar = radars_[r];
     const auto last = memory.radars.begin() + static_cast<std::ptrdiff_t>(memory.number_of_radars);
@@ -214,15 +256,9 @@ void WindowedFilter::restore(const Memory& memory) {
         fluctuation.variance[k] = known->fluctuation_variance[k];
       }
     }
-    // What a slow fluctuation has done meanwhile is not known. One of all radars is as large for each of them, and
-    // counts n-fold where it is taken as independent.
     RememberedVector changes = RememberedVector::Zero();
-    changes.segment<3>(own::kRotation).setConstant(square(doubts.rotation_std_rad));
-    changes(own::kRateScale) = square(doubts.rate_scale_std);
-    constexpr std::array<int, kFluctuations> kOwnFluctuating{own::kRotation + 2, own::kRotation + 1, own::kRateScale};
-    for (std::size_t k = 0; k < kFluctuations; ++k) {
-      changes(kOwnFluctuating[k]) += fluctuation.variance[k] + number * common.variance[k];
-    }
+    changes.segment<3>(own::kRotation).setConstant(doubted * square(doubts.rotation_std_rad));
+    changes(own::kRateScale) = doubted * square(doubts.rate_scale_std);
     doubt(stds, changes, own);
     OwnMatrix covariance = OwnMatrix::Zero();
     covariance.topLeftCorner<kRemembered, kRemembered>() = own;
@@ -234,8 +270,34 @@ void WindowedFilter::restore(const Memory& memory) {
     radar.start.clear();
   }
   // The load may have changed meanwhile; decide_load() removes the change if there was none.
-  load_ = 1;
-  load_since_s_ = 0.0;
+  if (away_s >= doubts.stop_s) {
+    load_ = 1;
+    load_since_s_ = 0.0;
+  }
+  save_present(restored_);
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (radars_[r].remembered) allow_fluctuations(r);
+  }
+}
+
+/// A slow fluctuation goes on as it was before, where the equations take a new one: what it does from now on is no
+/// news. So the memory counts with its variance; one of all radars is as large for each of them, and counts n-fold
+/// where it is taken as independent.
+void WindowedFilter::allow_fluctuations(std::size_t index) {
+  constexpr std::array<int, kFluctuations> kOwnFluctuating{own::kRotation + 2, own::kRotation + 1, own::kRateScale};
+  const RadarSolution& solution = solver_.radar(index);
+  const auto number = static_cast<double>(radars_.size());
+  RememberedVector more = RememberedVector::Zero();
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    more(kOwnFluctuating[k]) = solution.fluctuation.variance[k] + number * solver_.common().variance[k];
+  }
+  RememberedMatrix own = solution.covariance.topLeftCorner<kRemembered, kRemembered>();
+  doubt(own_prior_stds(priors_, solution.has_elevation), more, own);
+  OwnMatrix covariance = OwnMatrix::Zero();
+  covariance.topLeftCorner<kRemembered, kRemembered>() = own;
+  const OwnState state = solution.state;
+  const Fluctuation fluctuation = solution.fluctuation;
+  solver_.restore(index, state, covariance, fluctuation);
 }
 
 bool WindowedFilter::seed(std::size_t index, const Eigen::Vector3d& rotation_vehicle_rad,
@@ -248,6 +310,7 @@ bool WindowedFilter::seed(std::size_t index, const Eigen::Vector3d& rotation_veh
   Radar& radar = radars_[index];
   segments_.forget(index, local::kRotation, 3);
   solver_.seed(index, geometry::so3_exp(rotation_vehicle_rad) * radar.nominal, covariance);
+  restored_.number_of_radars = 0;
   changes_.restart(index);
   load_watch_.restart();
   speed_watch_.restart();
@@ -266,21 +329,34 @@ void WindowedFilter::set_has_elevation(std::size_t index, bool has_elevation) {
   const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
   solver_.set_prior(index, radar.nominal, has_elevation, radar.sums.knots().step_rad);
   if (!radar.remembered) return;
+  restored_.number_of_radars = 0;
   const Eigen::Vector3d variances(tilt_variance.x(), tilt_variance.y(), std::max(yaw_variance, 1e-12));
   solver_.seed(index, turned, variances.asDiagonal());
 }
 
-bool WindowedFilter::contradicts_memory(std::size_t index, const StartResult& found) const {
+bool WindowedFilter::contradicts_memory(std::size_t index, const StartResult& found, const ScanMotion3d& motion) const {
   constexpr double kStds = 3.0, kLoadStds = 3.0;
-  const RadarSolution& solution = solver_.radar(index);
-  const Eigen::Vector3d off =
-      geometry::so3_log(found.sensor_to_vehicle * solver_.point(index, driven_s_, load_).sensor_to_vehicle.transpose());
+  const Point point = solver_.point(index, driven_s_, load_);
+  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * point.sensor_to_vehicle.transpose());
+  // What the memory leaves open about pitch and yaw, as half a second shows them: with the fluctuations, and with the
+  // vehicle's constants, of which slip and time offset act like a yaw in a turn.
+  const Motion signalled{.speed_mps = motion.speed_mps,
+                         .yaw_rate_radps = motion.yaw_rate_radps,
+                         .acceleration_mps2 = motion.acceleration_mps2,
+                         .clear_acceleration_mps2 = motion.acceleration_mps2,
+                         .clear_yaw_acceleration_radps2 = motion.yaw_acceleration_radps2,
+                         .yaw_rate_std_radps = 0.0};
+  const ScanModel model = model_scan(point, radars_[index].config.mounting_pose.position_m, signalled);
+  const Eigen::Matrix<double, 3, local::kCurve> by_parameter =
+      point.sensor_to_vehicle * model.by_parameter.transpose() / std::max(std::abs(motion.speed_mps), 1.0);
+  const Eigen::Matrix<double, local::kCurve, local::kCurve> covariance =
+      solver_.block_covariance(index).topLeftCorner<local::kCurve, local::kCurve>();
   const auto limit = [&](int axis, double least_rad) {
-    const int c = own::kRotation + axis;
-    return least_rad +
-           kStds * std::sqrt(std::max(found.covariance(axis + 1, axis + 1), 0.0) + solution.covariance(c, c));
+    // About y the vertical component of the velocity shows it, about z the lateral one.
+    const Eigen::Matrix<double, local::kCurve, 1> by = by_parameter.row(axis == 1 ? 2 : 1).transpose();
+    return least_rad + kStds * std::sqrt(std::max(found.covariance(axis + 1, axis + 1), 0.0) + by.dot(covariance * by));
   };
-  const bool pitched = found.searched[1] && solution.has_elevation &&
+  const bool pitched = found.searched[1] && solver_.radar(index).has_elevation &&
                        std::abs(off.y()) > limit(1, change_config_.pitch_rad + kLoadStds * priors_.load_std_rad);
   return pitched || std::abs(off.z()) > limit(2, change_config_.yaw_rad);
 }

@@ -21,7 +21,12 @@ scale_time_outs() {
     echo '[Service]'
     echo "WatchdogSec=$((2000 * factor_percent / 100))ms"
     echo "TimeoutStartSec=$((10000 * factor_percent / 100))ms"
-    echo "TimeoutStopSec=$((500 * factor_percent / 100))ms"
+    echo "TimeoutStopSec=$((10000 * factor_percent / 100))ms"
+    echo "TimeoutAbortSec=$((500 * factor_percent / 100))ms"
+    echo "Environment=BORESIGHT_STOP_LIMIT_MS=$((500 * factor_percent / 100))"
+    echo "Environment=BORESIGHT_ROUDI_ASLEEP_LIMIT_MS=$((500 * factor_percent / 100))"
+    echo "Environment=BORESIGHT_ROUDI_STARVED_LIMIT_MS=$((2500 * factor_percent / 100))"
+    echo "Environment=BORESIGHT_ROUDI_BUSY_LIMIT_MS=$((2000 * factor_percent / 100))"
   } > /etc/systemd/system/boresight-.service.d/50-emulated.conf
   systemctl daemon-reload
 }

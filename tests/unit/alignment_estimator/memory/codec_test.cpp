@@ -47,6 +47,8 @@ void expect_same(const Memory::Radar& out, const Memory::Radar& in) {
 }
 
 void expect_same_vehicle(const Memory& out, const Memory& in) {
+  EXPECT_EQ(out.boot, in.boot);
+  EXPECT_EQ(out.since_boot_ns, in.since_boot_ns);
   EXPECT_EQ(out.speed_scale, in.speed_scale);
   EXPECT_EQ(out.yaw_rate_bias_radps, in.yaw_rate_bias_radps);
   EXPECT_EQ(out.yaw_rate_gain, in.yaw_rate_gain);

@@ -28,6 +28,8 @@ inline Memory example_memory(std::size_t radars = 4, double mark = 0.0) {
     }
   };
   m.number_of_radars = radars;
+  m.boot = 0x123456789abcdef0;
+  m.since_boot_ns = 1'234'567'890'123;
   m.speed_scale = 1.01;
   m.yaw_rate_bias_radps = mark * 1e-6;
   m.yaw_rate_gain = 0.02;

@@ -331,20 +331,20 @@ TEST(PublishedMethods, ContinueFromTheLastIgnitionCycle) {
     EXPECT_EQ(memory.number_of_radars, 4u);
     EXPECT_GT(memory.variance(Memory::kSpeedScale, Memory::kSpeedScale), 0.0);
     const auto second = make_published(kind, world.vehicle, as_published());
-    second->restore(memory);
+    second->restore(memory, std::numeric_limits<double>::infinity());
     for (std::size_t r = 0; r < 4; ++r) EXPECT_LT((parameters(*second, r) - parameters(*first, r)).norm(), 1e-9) << r;
     EXPECT_EQ(second->estimate(2).state, AlignmentState::kNoData);
     memory.radars[3].id = 9;  // another radar is mounted there now
     memory.radars[2].rotation_vehicle_rad[0] = std::numeric_limits<double>::quiet_NaN();
     memory.speed_scale = std::numeric_limits<double>::quiet_NaN();
     const auto third = make_published(kind, world.vehicle, as_published());
-    third->restore(memory);
+    third->restore(memory, std::numeric_limits<double>::infinity());
     EXPECT_EQ(parameters(*third, 3), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
     EXPECT_EQ(parameters(*third, 2), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
     EXPECT_NE(parameters(*third, 1)(1), 0.0);
     memory.number_of_radars = 3;
     const auto fourth = make_published(kind, world.vehicle, as_published());
-    fourth->restore(memory);
+    fourth->restore(memory, std::numeric_limits<double>::infinity());
     EXPECT_EQ(parameters(*fourth, 1), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
   }
 }

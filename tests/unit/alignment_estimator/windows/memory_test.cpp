@@ -22,10 +22,13 @@ Matrix covariance_of(const Memory::Radar& radar) {
   return Eigen::Map<const Matrix>(radar.covariance.data());
 }
 
+constexpr double kNextDrive = std::numeric_limits<double>::infinity();
+constexpr double kRestart_s = 0.5;
+
 /// A filter that begins with this memory.
-std::unique_ptr<WindowedFilter> continued(const WindowsBench& bench, const Memory& memory) {
+std::unique_ptr<WindowedFilter> continued(const WindowsBench& bench, const Memory& memory, double away_s = kNextDrive) {
   auto filter = std::make_unique<WindowedFilter>(bench.vehicle, FilterConfig{}, bench.config);
-  filter->restore(memory);
+  filter->restore(memory, away_s);
   return filter;
 }
 
@@ -162,7 +165,10 @@ TEST(WindowsMemory, LostCorrelationsAddNoInformation) {
   EXPECT_GT(eigen.eigenvalues()(0), -1e-6);
 }
 
-TEST(WindowsMemory, ThirtyRestartsInADriveLeaveTheEstimateHonest) {
+class WindowsMemoryRestarts : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Away, WindowsMemoryRestarts, testing::Values(kRestart_s, kNextDrive));
+
+TEST_P(WindowsMemoryRestarts, ThirtyInADriveLeaveTheEstimateHonest) {
   double squares = 0.0, count = 0.0;
   for (const std::uint64_t seed : {11u, 12u, 13u, 14u}) {
     WindowsBench bench(aligned_real_car(seed, 190.0));
@@ -184,10 +190,63 @@ TEST(WindowsMemory, ThirtyRestartsInADriveLeaveTheEstimateHonest) {
         }
         EXPECT_GT(std_of(parts, 0), 0.98 * std_of(whole, 0)) << r << ' ' << restart;
       }
-      restarted = continued(bench, *memory_of(*restarted));
+      restarted = continued(bench, *memory_of(*restarted), GetParam());
     }
   }
   EXPECT_LE(squares / count, 3.0);
+}
+
+TEST(WindowsMemory, RestartsOfTheServiceCostNoKnowledge) {
+  WindowsBench bench(aligned_real_car(21, 200.0));
+  bench.run(80.0);
+  const auto before = memory_of(*bench.filter);
+  // Lives from less than it takes to begin to a quarter of a minute.
+  for (const double life_s : {0.3, 2.0, 5.0, 0.1, 15.0, 1.0, 9.0, 4.0, 14.0, 3.0}) {
+    bench.filter = continued(bench, *memory_of(*bench.filter), kRestart_s);
+    bench.run(bench.time_s + life_s);
+    const auto now = memory_of(*bench.filter);
+    for (std::size_t r = 0; r < 4; ++r) {
+      EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u) << r << ' ' << life_s;
+      for (const std::size_t axis : {1u, 2u}) {
+        const double std_rad = std::sqrt(before->radars[r].rotation_variance(axis, axis));
+        EXPECT_LT(std::sqrt(now->radars[r].rotation_variance(axis, axis)), 1.1 * std_rad) << r << ' ' << axis;
+        EXPECT_LT(std::abs(bench.error_rad(r)(static_cast<Eigen::Index>(axis))), 4.0 * std_rad) << r << ' ' << axis;
+      }
+      EXPECT_GE(now->radars[r].seconds_of_drive, before->radars[r].seconds_of_drive) << r;
+    }
+  }
+}
+
+TEST(WindowsMemory, TheDoubtGrowsWithTheTimeAway) {
+  WindowsBench bench(aligned_real_car(22, 60.0));
+  bench.run(60.0);
+  const auto memory = memory_of(*bench.filter);
+  const RestoreConfig doubts;
+  const double variance = memory->radars[1].rotation_variance(2, 2);
+  EXPECT_NEAR(memory_of(*continued(bench, *memory, 0.0))->radars[1].rotation_variance(2, 2), variance, 1e-9 * variance);
+  double last = std_of(continued(bench, *memory, 0.0)->estimate(1), 3);
+  for (const double away_s : {0.1 * doubts.doubt_s, doubts.doubt_s, 3.0 * doubts.doubt_s, kNextDrive}) {
+    const double now = std_of(continued(bench, *memory, away_s)->estimate(1), 3);
+    EXPECT_GT(now, last) << away_s;
+    last = now;
+  }
+  EXPECT_GT(last, doubts.rotation_std_rad);
+}
+
+/// The first drive after a workshop turned a radar: what is learnt replaces the memory that was contradicted.
+TEST(WindowsMemory, AContradictedMemoryIsReplacedOnceTheNewOneHasConverged) {
+  WindowsBench bench(corner_drive(16, 60.0));
+  bench.run(20.0);
+  auto memory = memory_of(*bench.filter);
+  memory->radars[1].rotation_vehicle_rad[2] += 3.0 * kRadiansPerDegree;
+  bench.filter = continued(bench, *memory, kRestart_s);
+  bench.run(20.3);
+  EXPECT_NEAR(memory_of(*bench.filter)->radars[1].rotation_vehicle_rad[2], memory->radars[1].rotation_vehicle_rad[2],
+              1e-12)
+      << "less than it takes to begin";
+  bench.run(60.0);
+  EXPECT_NEAR(memory_of(*bench.filter)->radars[1].rotation_vehicle_rad[2],
+              memory->radars[1].rotation_vehicle_rad[2] - 3.0 * kRadiansPerDegree, 0.2 * kRadiansPerDegree);
 }
 
 TEST(WindowsMemory, ARadarThatWasTurnedInTheWorkshopIsFoundAgain) {
