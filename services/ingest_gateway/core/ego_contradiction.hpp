@@ -1,4 +1,5 @@
-// Decides over many scans if a radar's range rates contradict the motion of the vehicle.
+// Decides from scan to scan if a radar's range rates contradict the motion of the vehicle.
+// Equations: docs/algorithms/ingest.md (I5)–(I8).
 #pragma once
 
 #include <array>
@@ -6,34 +7,41 @@
 #include <cstdint>
 
 #include "services/ingest_gateway/core/range_rate_consensus.hpp"
+#include "services/ingest_gateway/core/sequential_test.hpp"
+#include "services/ingest_gateway/core/stationary_share.hpp"
 
 namespace boresight::ingest {
 
-/// Pools the support of scans over some thousand detections, then decides and starts a new pool. A single scan may
-/// contain mostly moving objects; a pool, one to two seconds for a radar of many detections, does not. A radar of a
-/// dozen tracks needs half a minute. No allocation.
+/// One sequential test for each motion of the sensor that may explain the range rates instead of the vehicle's, and one
+/// for "no motion explains them". No allocation.
 class EgoContradiction {
  public:
-  explicit EgoContradiction(const RadarConfig& radar) : consensus_(radar) {}
+  explicit EgoContradiction(const RadarConfig& radar);
 
-  /// True if this scan belongs to a series that contradicts the vehicle's motion. False if the test is not possible:
-  /// unknown speed or yaw rate, below 5 m/s, too few detections. The speed is extrapolated by the acceleration from
-  /// `ego.header.measurement_time_ns` to the time of the scan.
+  /// True if this scan belongs to a series that contradicts the vehicle's motion. False if the vehicle's motion makes
+  /// no test possible: unknown speed or yaw rate, below 5 m/s. A scan that cannot be tested itself (too few detections,
+  /// or perhaps measured in reverse) belongs to the series before it. The speed is extrapolated by the acceleration
+  /// from `ego.header.measurement_time_ns` to the time of the scan.
   [[nodiscard]] bool judge(const RadarScan& scan, std::int64_t measurement_time_ns, const EgoMotion& ego);
 
  private:
+  /// Sums of the last scans, which lose weight with time.
   struct Pool {
-    std::size_t scans = 0, reported = 0, tested = 0, by_ego = 0, by_chance = 0, alike = 0;
-    std::array<std::size_t, RangeRateConsensus::kOtherScales> by_other{};
+    double tested = 0.0, by_ego = 0.0, by_chance = 0.0, distinct = 0.0;
+    void add(const RangeRateConsensus::Support& support, double usual_chance, double keep);
   };
-  void add(const RangeRateConsensus::Support& support);
-  [[nodiscard]] bool is_dense() const;
-  [[nodiscard]] bool contradicts();
+  void weigh_alternatives(const RangeRateConsensus::Support& support);
+  void weigh_chance(const RangeRateConsensus::Support& support);
+  void learn(const RangeRateConsensus::Support& support);
 
   RangeRateConsensus consensus_;
+  double scene_scans_, pooled_scans_, noise_scans_;  // of the same objects; of pool_; of the same noise
+  std::array<SequentialTest, RangeRateConsensus::kAlternatives> alternatives_;
+  SequentialTest chance_;
   Pool pool_;
+  StationaryShare share_, share_so_far_;  // the latter with the scans that may yet turn out to contradict
+  double chance_if_wrong_ = 0.0;          // support by chance in the present series that contradicts
   bool contradicts_ = false;
-  bool nothing_stood_still_ = false;  // in the previous pool
 };
 
 }  // namespace boresight::ingest

@@ -102,6 +102,31 @@ TEST_F(Judged, ATrackerOfMovingObjectsOnlyIsNotSuspect) {
   EXPECT_EQ(contradictions(20 * 120, 10, 0.0, motion(25.0), 25.0), 0u);
 }
 
+TEST(ScanJudge, TracksOfTrafficAreNoMirroredAzimuth) {
+  // A radar at a corner that reports tracks of moving objects only: a convoy ahead, and slower vehicles beside. Their
+  // range rates are those of stationary reflectors at the azimuths with the opposite sign, near some directions.
+  RadarConfig corner = forward_radar();
+  corner.mounting_pose.yaw_rad = M_PI / 4.0;
+  ScanJudge judge(corner);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  const auto scan = std::make_unique<RadarScan>();
+  const EgoMotion ego = motion(20.0);
+  for (int i = 0; i < 20 * 120; ++i) {
+    scan->number_of_valid_detections = 12;
+    for (std::size_t k = 0; k < 12; ++k) {
+      const bool is_convoy = k < 8;
+      const double from_road_rad = is_convoy ? 0.01 * static_cast<double>(k) : 0.3 + 0.15 * static_cast<double>(k - 8);
+      const double own_mps = is_convoy ? 19.0 : 12.0;
+      scan->azimuth_rad[k] = static_cast<float>(from_road_rad - M_PI / 4.0 + 0.01 * noise(random));
+      scan->range_m[k] = static_cast<float>(20.0 + 5.0 * static_cast<double>(k) + noise(random));
+      scan->range_rate_mps[k] = static_cast<float>((own_mps - 20.0) * std::cos(from_road_rad) + noise(random));
+      scan->detection_flags[k] = 0;
+    }
+    EXPECT_EQ(judge.judge(*scan, i * kScanCycle_ns, i * kScanCycle_ns, 0, &ego), 0) << i;
+  }
+}
+
 TEST_F(Judged, AWrongSpeedIsReportedUntilItEnds) {
   EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
   EXPECT_GT(contradictions(100, 100, 0.6, motion(22.5), 15.0), 40u);

@@ -1,0 +1,36 @@
+// A sequential test between two hypotheses on a radar, which is sound at first and may change at any time.
+// Equations: docs/algorithms/ingest.md (I7), (I8).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::ingest {
+
+/// Cumulative sum of log likelihood ratios (Page 1954) towards the other hypothesis, with a return by the same test.
+class SequentialTest {
+ public:
+  /// `log_ratio`: log likelihood ratio of "contradicts" to "sound" in one scan. `dependent_scans`: scans whose noise is
+  /// that of one independent scan. `least_scans`: fewer never decide, whatever they contain.
+  void add(double log_ratio, double dependent_scans, double least_scans) {
+    const double limit = contradicts_ ? -std::log(kFalseReturn) : -std::log(kFalseAlarm);
+    const double step = std::clamp(log_ratio / dependent_scans, -limit / least_scans, limit / least_scans);
+    sum_ = std::max(0.0, sum_ + (contradicts_ ? -step : step));
+    if (sum_ < limit) return;
+    contradicts_ = !contradicts_;
+    sum_ = 0.0;
+  }
+  [[nodiscard]] bool contradicts() const { return contradicts_; }
+  /// True if nothing speaks for the other hypothesis.
+  [[nodiscard]] bool is_settled() const { return sum_ == 0.0; }
+
+ private:
+  /// Probabilities that a decision is wrong (choice): about one false alarm in a million observations of a sound radar,
+  /// one false return in a thousand of a wrong one, which is found wrong again soon.
+  static constexpr double kFalseAlarm = 1e-5, kFalseReturn = 1e-2;
+
+  double sum_ = 0.0;
+  bool contradicts_ = false;
+};
+
+}  // namespace boresight::ingest
