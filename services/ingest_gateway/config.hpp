@@ -5,6 +5,7 @@
 #include <string>
 
 #include "services/common/runtime/config/reader.hpp"
+#include "services/ingest_gateway/core/contradiction_config.hpp"
 
 namespace boresight::ingest {
 
@@ -13,6 +14,7 @@ enum class Input : std::uint8_t { kLive, kReplay };
 struct Config {
   Input input = Input::kLive;
   std::string tunnel_path;  ///< path of the replay tunnel's socket
+  ContradictionConfig contradiction;
 };
 
 /// $BORESIGHT_RUNTIME_DIR, else $RUNTIME_DIRECTORY (set by systemd), else /tmp/boresight-<uid>; plus "replay.sock".

@@ -30,7 +30,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
         const ingest::Config& config) {
   log_warnings(mappings);
   ingest::BusSink sink(node);
-  ingest::Gateway gateway(vehicle, sink, mappings);
+  ingest::Gateway gateway(vehicle, sink, mappings, config.contradiction);
   ingest::Backlog backlog;
   const bool is_live = config.input != ingest::Input::kReplay;
   ingest::Links links(node, {.on_frame =

@@ -127,7 +127,7 @@ class RunDrive {
     if (has_tables) {
       play_tables(*chain, begin_output);
     } else {
-      play_recordings(*chain, begin_output);
+      play_recordings(*chain, settings.contradiction, begin_output);
     }
     bar_.wipe();
     summary_.is_complete = !runtime::stop_signalled();
@@ -142,13 +142,13 @@ class RunDrive {
 
  private:
   template <typename Begin>
-  void play_recordings(run::Chain& chain, const Begin& begin_output) {
+  void play_recordings(run::Chain& chain, const ingest::ContradictionConfig& contradiction, const Begin& begin_output) {
     const auto reader = recording::open_recordings(options_.recordings, [this](const std::string& problem) {
       // A signal interrupts the reading of a pipe: no problem of the recording.
       if (!runtime::stop_signalled()) problems_.bad_line(problem);
     });
     run::GatewayFeed feed(chain);
-    ingest::Gateway gateway(vehicle_, feed, ingest::read_mappings(vehicle_));
+    ingest::Gateway gateway(vehicle_, feed, ingest::read_mappings(vehicle_), contradiction);
     begin_output();
     recording::Frame frame;
     for (std::uint64_t frames = 1; !runtime::stop_signalled() && reader->next(frame); ++frames) {

@@ -81,12 +81,13 @@ class Labeller {
   std::unique_ptr<run::Chain> chain_;
 };
 
-void play_recordings(const LabelledDrive& drive, const VehicleConfig& vehicle, run::Chain& chain,
-                     input::Problems& problems, const std::function<void(double)>& look) {
+void play_recordings(const LabelledDrive& drive, const VehicleConfig& vehicle,
+                     const ingest::ContradictionConfig& contradiction, run::Chain& chain, input::Problems& problems,
+                     const std::function<void(double)>& look) {
   const auto reader =
       recording::open_recordings(drive.recordings, [&](const std::string& problem) { problems.bad_line(problem); });
   run::GatewayFeed feed(chain);
-  ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
+  ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle), contradiction);
   recording::Frame frame;
   for (std::uint64_t frames = 1; reader->next(frame); ++frames) {
     chain.advance(frame.stamp_ns);
@@ -120,7 +121,7 @@ DriveRun run_drive(const LabelledDrive& drive, const VehicleConfig& vehicle, con
   if (drive.has_tables()) {
     lines_of_unknown_radars = play_tables(drive, vehicle, labeller.chain(), problems, look);
   } else {
-    play_recordings(drive, vehicle, labeller.chain(), problems, look);
+    play_recordings(drive, vehicle, settings.contradiction, labeller.chain(), problems, look);
   }
   DriveRun result = labeller.finish();
   result.lines_of_unknown_radars = lines_of_unknown_radars;

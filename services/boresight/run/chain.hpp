@@ -18,6 +18,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
 #include "services/ghost_filter/core/method.hpp"
+#include "services/ingest_gateway/core/contradiction_config.hpp"
 #include "services/tracker/core/config.hpp"
 #include "services/tracker/core/multi_object_tracker.hpp"
 
@@ -30,6 +31,7 @@ struct Settings {
   ghosts::Config ghosts;
   tracking::Config tracker;
   health::Config health;
+  ingest::ContradictionConfig contradiction;  ///< for the gateway before the chain
 };
 
 /// One thread, no clock: the same inputs give the same results. A scan is corrected with the ego motions and estimates

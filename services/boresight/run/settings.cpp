@@ -4,6 +4,7 @@
 #include "services/detection_corrector/config.hpp"
 #include "services/ghost_filter/config.hpp"
 #include "services/health/config.hpp"
+#include "services/ingest_gateway/config.hpp"
 #include "services/tracker/config.hpp"
 
 namespace boresight::run {
@@ -14,13 +15,14 @@ Settings read_settings(const runtime::Configuration& configuration, const Vehicl
           .corrector = corrector::read_config(open("detection_corrector")),
           .ghosts = ghosts::read_config(configuration, vehicle),
           .tracker = tracking::read_config(configuration),
-          .health = health::read_config(open("health")).supervision};
+          .health = health::read_config(open("health")).supervision,
+          .contradiction = ingest::read_config(open("ingest_gateway")).contradiction};
 }
 
 std::vector<std::pair<std::string, std::string>> settings_files(const runtime::Configuration& configuration) {
   std::vector<std::pair<std::string, std::string>> files;
-  for (const char* const service :
-       {"alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "object_classes", "health"}) {
+  for (const char* const service : {"ingest_gateway", "alignment_estimator", "detection_corrector", "ghost_filter",
+                                    "tracker", "object_classes", "health"}) {
     files.emplace_back(service, configuration.service_file(service).string());
   }
   return files;

@@ -7,19 +7,6 @@ namespace boresight::ingest {
 
 namespace {
 
-/// Below, range rates of stationary reflectors are too similar to those of slow traffic.
-constexpr float kLeastSpeed_mps = 5.0F;
-/// Highest speed in reverse. Without a signal of the direction of travel, the opposite sign may be true below it.
-constexpr float kFastestReverse_mps = 10.0F;
-/// Time for which the same objects fill the view: a truck of 16 m passes at 16 m/s. Moving objects imitate another
-/// speed of the sensor, or hide all stationary reflectors, for so long.
-constexpr double kScene_s = 1.0;
-/// Correlation of detections of stationary reflectors from scan to scan (measured: RadarScenes, 41 % are seen again
-/// beyond chance). No traffic imitates another direction of the sensor's motion.
-constexpr double kSeenAgain = 0.45;
-/// Least share of stationary detections that an alternative must explain to count (choice: a fifth in dense traffic).
-constexpr double kLeastShare = 0.1;
-
 /// True if the vehicle's motion backwards explains the scan better than the others do.
 bool may_reverse(const RangeRateConsensus::Support& support) {
   const auto& by = support.by_alternative;
@@ -29,12 +16,15 @@ bool may_reverse(const RangeRateConsensus::Support& support) {
 
 }  // namespace
 
-EgoContradiction::EgoContradiction(const RadarConfig& radar)
-    : consensus_(radar),
-      scene_scans_(std::max(1.0, kScene_s / std::max(radar.cycle_time_s, 1e-3))),
+EgoContradiction::EgoContradiction(const RadarConfig& radar, const ContradictionConfig& config)
+    : config_(config),
+      consensus_(radar),
+      scene_scans_(std::max(1.0, config.scene_s / std::max(radar.cycle_time_s, 1e-3))),
       pooled_scans_(std::max(1.0, 0.5 * scene_scans_)),
-      noise_scans_((1.0 + kSeenAgain) / (1.0 - kSeenAgain)),
-      share_(kScene_s, std::max(radar.cycle_time_s, 1e-3)),
+      noise_scans_((1.0 + config.seen_again) / (1.0 - config.seen_again)),
+      alternatives_(RangeRateConsensus::kAlternatives, SequentialTest(config.false_alarm, config.false_return)),
+      chance_(config.false_alarm, config.false_return),
+      share_(config, std::max(radar.cycle_time_s, 1e-3)),
       share_so_far_(share_) {}
 
 bool EgoContradiction::judge(const RadarScan& scan, std::int64_t measurement_time_ns, const EgoMotion& ego) {
@@ -44,11 +34,12 @@ bool EgoContradiction::judge(const RadarScan& scan, std::int64_t measurement_tim
   if (std::abs(elapsed_s) < 1.0) {
     then.speed_mps += static_cast<float>(static_cast<double>(ego.longitudinal_acceleration_mps2) * elapsed_s);
   }
-  const float speed_mps = std::abs(then.speed_mps);
-  if (!(speed_mps > kLeastSpeed_mps && speed_mps < 200.0F && std::abs(ego.yaw_rate_radps) < 10.0F)) return false;
+  const double speed_mps = std::abs(static_cast<double>(then.speed_mps));
+  if (!(speed_mps > config_.least_speed_mps && speed_mps < 200.0 && std::abs(ego.yaw_rate_radps) < 10.0F)) return false;
   const RangeRateConsensus::Support support = consensus_.test(scan, then);
   if (support.tested == 0) return contradicts_;
-  if (!ego.has(ego_field::kReverse) && speed_mps < kFastestReverse_mps && may_reverse(support)) return contradicts_;
+  if (!ego.has(ego_field::kReverse) && speed_mps < config_.fastest_reverse_mps && may_reverse(support))
+    return contradicts_;
   weigh_alternatives(support);
   weigh_chance(support);
   contradicts_ = chance_.contradicts() || std::any_of(alternatives_.begin(), alternatives_.end(),
@@ -78,7 +69,7 @@ void EgoContradiction::weigh_alternatives(const RangeRateConsensus::Support& sup
   const auto tested = static_cast<double>(support.tested);
   const double chance =
       support.is_clear ? share_.by_chance() : (static_cast<double>(support.by_chance_of_one) + 0.5) / (tested + 1.0);
-  const double share = std::max(kLeastShare, share_.least());
+  const double share = std::max(config_.least_share, share_.least());
   // Log likelihood that a share of the detections is stationary for the motion, in relation to none.
   const double per_support = std::log1p(share / ((1.0 - share) * chance)), of_others = std::log1p(-share);
   const auto evidence = [&](std::size_t supporting) {
@@ -91,7 +82,7 @@ void EgoContradiction::weigh_alternatives(const RangeRateConsensus::Support& sup
   }
   // Two objects determine a velocity, so that it counts only for a radar that is known to see stationary reflectors.
   // Tracks of another radar last as long as a scene.
-  const bool sees_the_road = share_.least() >= kLeastShare;
+  const bool sees_the_road = share_.least() >= config_.least_share;
   for (const std::size_t k : {RangeRateConsensus::kMirrored, RangeRateConsensus::kRemembered}) {
     const bool is_mirrored = k == RangeRateConsensus::kMirrored;
     const double found = sees_the_road || is_mirrored ? evidence(support.by_alternative[k]) : 0.0;

@@ -2,10 +2,11 @@
 // Equations: docs/algorithms/ingest.md (I5)–(I8).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "services/ingest_gateway/core/contradiction_config.hpp"
 #include "services/ingest_gateway/core/range_rate_consensus.hpp"
 #include "services/ingest_gateway/core/sequential_test.hpp"
 #include "services/ingest_gateway/core/stationary_share.hpp"
@@ -16,7 +17,7 @@ namespace boresight::ingest {
 /// for "no motion explains them". No allocation.
 class EgoContradiction {
  public:
-  explicit EgoContradiction(const RadarConfig& radar);
+  explicit EgoContradiction(const RadarConfig& radar, const ContradictionConfig& config = {});
 
   /// True if this scan belongs to a series that contradicts the vehicle's motion. False if the vehicle's motion makes
   /// no test possible: unknown speed or yaw rate, below 5 m/s. A scan that cannot be tested itself (too few detections,
@@ -34,9 +35,10 @@ class EgoContradiction {
   void weigh_chance(const RangeRateConsensus::Support& support);
   void learn(const RangeRateConsensus::Support& support);
 
+  ContradictionConfig config_;
   RangeRateConsensus consensus_;
   double scene_scans_, pooled_scans_, noise_scans_;  // of the same objects; of pool_; of the same noise
-  std::array<SequentialTest, RangeRateConsensus::kAlternatives> alternatives_;
+  std::vector<SequentialTest> alternatives_;
   SequentialTest chance_;
   Pool pool_;
   StationaryShare share_, share_so_far_;  // the latter with the scans that may yet turn out to contradict

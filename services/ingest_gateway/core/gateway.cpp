@@ -71,7 +71,8 @@ std::optional<std::uint32_t> radar_with_ego_signals(const VehicleConfig& vehicle
 
 }  // namespace
 
-Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings)
+Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings,
+                 const ContradictionConfig& contradiction)
     : sink_(sink),
       ego_(vehicle.ego),
       ego_source_(nullptr, make_ego_decoder(vehicle.ego, mappings), static_cast<EgoReceiver&>(*this), sink),
@@ -84,14 +85,14 @@ Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappi
   } else if (ego_source_id_ == ego_source_.id()) {
     can_.push_back({vehicle.ego.source.interface, &ego_source_});
   }
-  for (const RadarConfig& radar : vehicle.radars) add_radar(radar, mappings);
+  for (const RadarConfig& radar : vehicle.radars) add_radar(radar, mappings, contradiction);
   someip_.prepare();
   for (const auto& discovery : discoveries_) discovery->prepare();
 }
 
-void Gateway::add_radar(const RadarConfig& radar, const Mappings& mappings) {
-  sources_.push_back(
-      std::make_unique<Source>(&radar, make_decoder(radar, mappings), static_cast<EgoReceiver&>(*this), sink_));
+void Gateway::add_radar(const RadarConfig& radar, const Mappings& mappings, const ContradictionConfig& contradiction) {
+  sources_.push_back(std::make_unique<Source>(&radar, make_decoder(radar, mappings), static_cast<EgoReceiver&>(*this),
+                                              sink_, contradiction));
   Source& source = *sources_.back();
   const SourceAddress& address = radar.source;
   switch (address.link) {

@@ -22,7 +22,8 @@ namespace boresight::ingest {
 class Gateway : private EgoReceiver {
  public:
   /// Throws std::invalid_argument if the vehicle names a mapping that `mappings` lacks.
-  Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings = {});
+  Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings = {},
+          const ContradictionConfig& contradiction = {});
   ~Gateway() override;
 
   /// Frames with unknown ids on a known CAN bus are ignored, as buses carry other traffic. Datagrams from unknown
@@ -56,7 +57,7 @@ class Gateway : private EgoReceiver {
   void take_can(const recording::Frame& frame, const FrameStamp& stamp);
   void take_udp(const recording::Frame& frame, const FrameStamp& stamp);
   [[nodiscard]] bool is_for_someip(const recording::Frame& frame) const;
-  void add_radar(const RadarConfig& radar, const Mappings& mappings);
+  void add_radar(const RadarConfig& radar, const Mappings& mappings, const ContradictionConfig& contradiction);
   void add_someip(Source& source, const SourceAddress& address, std::uint16_t event, std::uint16_t eventgroup,
                   const E2eConfig& e2e);
   void take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) override;

@@ -42,8 +42,10 @@ constexpr std::size_t kLeastCopies = 8, kCopiesPart = 4;
 
 }  // namespace
 
-ScanJudge::ScanJudge(const RadarConfig& radar)
-    : field_of_view_(radar.field_of_view), cycle_ns_(std::max(radar.cycle_time_s, 1e-3) * 1e9), contradiction_(radar) {}
+ScanJudge::ScanJudge(const RadarConfig& radar, const ContradictionConfig& contradiction)
+    : field_of_view_(radar.field_of_view),
+      cycle_ns_(std::max(radar.cycle_time_s, 1e-3) * 1e9),
+      contradiction_(radar, contradiction) {}
 
 std::uint16_t ScanJudge::judge(const RadarScan& scan, std::int64_t measurement_time_ns, std::int64_t received_ns,
                                unsigned cycle_counter_bits, const EgoMotion* latest_ego) {

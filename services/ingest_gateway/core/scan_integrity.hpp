@@ -23,7 +23,7 @@ struct IntegrityCounters {
 /// Judges the scans of one radar, in the order of reception. No allocation.
 class ScanJudge {
  public:
-  explicit ScanJudge(const RadarConfig& radar);
+  explicit ScanJudge(const RadarConfig& radar, const ContradictionConfig& contradiction = {});
 
   /// Returns scan_integrity bits, including those of the decoder in `scan.integrity`. Does not read `scan.header`.
   /// `cycle_counter_bits`: width of the sensor's counter in `scan.cycle_counter`, 0 without a counter. `latest_ego`:

@@ -4,10 +4,11 @@
 
 namespace boresight::ingest {
 
-Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink)
+Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink,
+               const ContradictionConfig& contradiction)
     : id_(radar == nullptr ? 0 : radar->id),
       clock_(radar == nullptr ? RadarConfig{} : *radar),
-      judge_(radar == nullptr ? RadarConfig{} : *radar),
+      judge_(radar == nullptr ? RadarConfig{} : *radar, contradiction),
       decoder_(std::move(decoder)),
       ego_(ego),
       sink_(sink) {}

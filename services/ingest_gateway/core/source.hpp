@@ -25,7 +25,8 @@ class EgoReceiver {
 class Source : public DecoderOutput {
  public:
   /// `radar` nullptr for the source of ego signals, whose id is 0.
-  Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink);
+  Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink,
+         const ContradictionConfig& contradiction = {});
 
   [[nodiscard]] std::uint32_t id() const { return id_; }
   [[nodiscard]] Decoder& decoder() { return *decoder_; }

@@ -3,12 +3,14 @@
 
 #include <cstddef>
 
+#include "services/ingest_gateway/core/contradiction_config.hpp"
+
 namespace boresight::ingest {
 
 /// Mean and spread from scene to scene, of motion only. No allocation.
 class StationaryShare {
  public:
-  explicit StationaryShare(double scene_s, double cycle_s) : scene_s_(scene_s), cycle_s_(cycle_s) {}
+  StationaryShare(const ContradictionConfig& config, double cycle_s) : config_(config), cycle_s_(cycle_s) {}
 
   /// Of one scan: the share of stationary detections beyond chance, its weight (1: as a scan in which chance is no
   /// explanation), the share that chance explains, and the number of reported detections.
@@ -20,7 +22,8 @@ class StationaryShare {
   [[nodiscard]] double by_chance() const;
 
  private:
-  double scene_s_, cycle_s_;
+  ContradictionConfig config_;
+  double cycle_s_;
   double learnt_s_ = 0.0, weight_s_ = 0.0;
   double scene_ = 0.0;  // share in the present scene
   double mean_ = 0.0, variance_ = 0.0, by_chance_ = 0.1, reported_ = 0.0;

@@ -263,6 +263,7 @@ add_values("ghost_filter",
            ("least_mirror_share", "0.7", "evidence.intensity.least_mirror_share"), ("memory_s", "inf", "published.reflectors.memory_s"),
            ("past_scans", "[1, 3, 2, 5, 7]", "evidence.levels.past_scans"))
 add_values("ingest_gateway",
+           ("false_alarm", "0.0", "contradiction.false_alarm"), ("least_share", "0.5", "contradiction.least_share"),
            ("input", '"life"', "input"), ("input", '""', "input"), ("tunnel_path", f'"/tmp/{"x" * 200}"', "tunnel_path"))
 add_values("replay",
            ("tunnel_path", f'"/tmp/{"x" * 200}"', "tunnel_path"), ("discovery_group", '"10.0.0.1"', "someip.discovery_group"),

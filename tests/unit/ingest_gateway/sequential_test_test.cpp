@@ -9,10 +9,15 @@
 namespace boresight::ingest {
 namespace {
 
+SequentialTest sequential_test() {
+  const ContradictionConfig config;
+  return SequentialTest(config.false_alarm, config.false_return);
+}
+
 /// Scans until the test decides otherwise, at most `most`. The log ratios are those of a normal quantity whose mean is
 /// 0 if the radar is sound, and 1 if it is not.
 int scans_until_change(double mean, bool begins_contradicting, int most, std::uint64_t seed) {
-  SequentialTest test;
+  SequentialTest test = sequential_test();
   while (begins_contradicting && !test.contradicts()) test.add(100.0, 1.0, 1.0);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(mean, 1.0);
@@ -41,7 +46,7 @@ TEST(SequentialTest, ASoundRadarIsAccusedLessThanOnceIn100000Scans) {
 }
 
 TEST(SequentialTest, TheFirstSoundScansDoNotDelayTheDecision) {
-  SequentialTest fresh, old;
+  SequentialTest fresh = sequential_test(), old = fresh;
   for (int i = 0; i < 100'000; ++i) old.add(-50.0, 3.0, 3.0);
   int scans = 0;
   for (; !fresh.contradicts() && scans < 100; ++scans) {
@@ -53,7 +58,7 @@ TEST(SequentialTest, TheFirstSoundScansDoNotDelayTheDecision) {
 }
 
 TEST(SequentialTest, FewerScansThanASceneNeverDecide) {
-  SequentialTest test;
+  SequentialTest test = sequential_test();
   int scans = 0;
   for (; !test.contradicts() && scans < 100; ++scans) test.add(1e6, 2.0, 20.0);
   EXPECT_GE(scans, 20);
@@ -62,7 +67,7 @@ TEST(SequentialTest, FewerScansThanASceneNeverDecide) {
 
 TEST(StationaryShare, IsThatOfTheLeastStationaryScenes) {
   constexpr double kCycle_s = 0.05;
-  StationaryShare share(1.0, kCycle_s);
+  StationaryShare share({}, kCycle_s);
   for (int scan = 0; scan < 20 * 120; ++scan) share.learn(scan / 40 % 2 == 0 ? 0.3 : 0.2, 1.0, 0.1, 100);
   EXPECT_GT(share.least(), 0.13);
   EXPECT_LT(share.least(), 0.21);
@@ -70,7 +75,7 @@ TEST(StationaryShare, IsThatOfTheLeastStationaryScenes) {
 }
 
 TEST(StationaryShare, OfARadarThatReportsMovingObjectsOnlyIsZero) {
-  StationaryShare few(1.0, 0.05), many(1.0, 0.05);
+  StationaryShare few({}, 0.05), many({}, 0.05);
   for (int scan = 0; scan < 20 * 60; ++scan) {
     few.learn(0.0, 0.8, 0.05, 10);
     many.learn(0.0, 0.8, 0.05, 100);
