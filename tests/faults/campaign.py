@@ -167,7 +167,7 @@ class Campaign:
         self.results.append(result)
         self.file.write(json.dumps(result) + "\n")
         self.file.flush()
-        wrong = [text for _, texts in report.failures([result], self.bars) for text in texts]
+        wrong = [text for _, texts in report.failures([result], self.bars, self.options.times) for text in texts]
         print(f"{fault.number:>5}  {fault.text()}: outage {result['outage_s']:.2f} s, restored "
               f"{result['recovered_after_s']} s{''.join('; ' + text for text in wrong)}", flush=True)
         if wrong:
@@ -221,13 +221,13 @@ class Campaign:
                 print("neither a restart nor deleting the stored states helps: the campaign ends here", flush=True)
                 break
         text = report.text(self.results, self.bars, self.options.seed,
-                           (load.busy_cores(), os.cpu_count(), os.getloadavg()[1]))
+                           (load.busy_cores(), os.cpu_count(), os.getloadavg()[1]), self.options.times)
         (self.options.out / "report.txt").write_text(text + "\n")
         print("\n" + text, flush=True)
         exit_code = self.product.stop()
         if exit_code != 0:
             print(f"the supervisor ended with exit code {exit_code}")
-        return exit_code == 0 and all(bar["passed"] for bar in report.judge(self.results, self.bars))
+        return exit_code == 0 and all(bar["passed"] for bar in report.judge(self.results, self.bars, self.options.times))
 
 
 def options_of(arguments):
@@ -240,6 +240,8 @@ def options_of(arguments):
     parser.add_argument("--first", type=int, default=0, help="number of the first fault (%(default)s)")
     parser.add_argument("--only", type=int, help="injects this fault of the seed alone")
     parser.add_argument("--kinds", help="draws only these kinds, separated by commas: other faults than without")
+    parser.add_argument("--no-times", dest="times", action="store_false",
+                        help="states the bars of outages without judging them: for a machine that is not quiet")
     options = parser.parse_args(arguments)
     unknown = set((options.kinds or "").split(",")) - {"", *plan.KINDS}
     if unknown:

@@ -40,11 +40,11 @@ def _is_data_path_kill(result):
     return result["group"] == "kill" and first["arguments"]["service"] in plan.DATA_PATH
 
 
-def _of_time(name, values, limit_s):
+def _of_time(name, values, limit_s, is_judged):
     p99 = percentile(values, 0.99)
     return {"bar": name, "count": len(values), "value": f"{p99:.2f} s" if values else "no fault",
-            "limit": f"{limit_s:g} s",
-            "passed": not values or p99 <= limit_s}
+            "limit": f"{limit_s:g} s" if is_judged else f"{limit_s:g} s on a quiet machine, not judged here",
+            "passed": not is_judged or not values or p99 <= limit_s}
 
 
 def _of_zero(name, results, is_failure, value):
@@ -60,8 +60,8 @@ def _seconds(*names):
             lambda results: f"{sum(result['false_s'][name] for result in results for name in names):.2f} s")
 
 
-def judge(results, bars):
-    """Every bar with its value; the campaign has passed if each of them has."""
+def judge(results, bars, with_times=True):
+    """Every bar with its value; the campaign has passed if each of them has. `with_times`: also those of outages."""
     count_of = lambda key: (lambda result: bool(result[key]), lambda all_: str(sum(len(x[key]) for x in all_)))
     return [
         _of_zero("false AVAILABLE, misaligned radar", results, *_seconds("available_misaligned")),
@@ -71,15 +71,16 @@ def judge(results, bars):
         _of_zero("not recovered", results, lambda result: not result["recovered"],
                  lambda all_: str(sum(not result["recovered"] for result in all_))),
         _of_zero("crashes, other findings", results, *count_of("findings")),
-        _of_time("outage p99, all faults", [x["outage_s"] for x in results], bars.outage_p99_s),
+        _of_time("outage p99, all faults", [x["outage_s"] for x in results], bars.outage_p99_s,
+                 with_times),
         _of_time("outage p99, data-path kill", [x["outage_s"] for x in results if _is_data_path_kill(x)],
-                 bars.data_path_kill_p99_s),
+                 bars.data_path_kill_p99_s, with_times),
         _of_time("outage p99, RouDi", [x["outage_s"] for x in results if x["group"] in ("kill_roudi", "stop_roudi")],
-                 bars.roudi_s),
+                 bars.roudi_s, with_times),
     ]
 
 
-def failures(results, bars):
+def failures(results, bars, with_times=True):
     """(result, what is wrong) of each fault that is a reason why the campaign fails."""
     for result in results:
         wrong = [f"{name} {seconds} s" for name, seconds in result["false_s"].items() if seconds > 0]
@@ -87,13 +88,13 @@ def failures(results, bars):
         if not result["recovered"]:
             wrong.append(f"not recovered: {result['state']}")
         limit_s = bars.data_path_kill_p99_s if _is_data_path_kill(result) else bars.outage_p99_s
-        if result["outage_s"] > limit_s:
+        if with_times and result["outage_s"] > limit_s:
             wrong.append(f"outage {result['outage_s']:.2f} s")
         if wrong:
             yield result, wrong
 
 
-def text(results, bars, seed, load):
+def text(results, bars, seed, load, with_times=True):
     """`load`: busy cores on average, cores, and the load average of the last five minutes."""
     lines = [f"campaign of seed {seed}: {len(results)} faults; {load[0]:.2f} busy cores of {load[1]}, "
              f"load average {load[2]:.1f}", "",
@@ -102,10 +103,10 @@ def text(results, bars, seed, load):
     for group in sorted({result["group"] for result in results}):
         lines.append(_row(group, [result for result in results if result["group"] == group]))
     lines += [_row("all", results), ""]
-    for bar in judge(results, bars):
+    for bar in judge(results, bars, with_times):
         lines.append(f"[{'ok' if bar['passed'] else 'MISSED'}] {bar['bar']}: {bar['value']} of {bar['count']} "
                      f"(limit {bar['limit']}) {bar.get('interval', '')}".rstrip())
-    found = list(failures(results, bars))
+    found = list(failures(results, bars, with_times))
     if found:
         lines += ["", "faults with findings, and how to replay them:"]
     for result, wrong in found:

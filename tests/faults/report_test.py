@@ -55,6 +55,15 @@ class Bars(unittest.TestCase):
         self.assertEqual(missed([result(outage_s=2.5, kind="kill_roudi")]), ["outage p99, all faults", "outage p99, RouDi"])
 
 
+    def test_times_that_are_not_judged_are_stated(self):
+        results = [result(outage_s=9.0), result(1, lost_states=["x"])]
+        self.assertEqual([bar["bar"] for bar in report.judge(results, BARS, with_times=False) if not bar["passed"]],
+                         ["lost persisted states"])
+        self.assertEqual([r["number"] for r, _ in report.failures(results, BARS, with_times=False)], [1])
+        text = report.text(results, BARS, 5, (1.0, 2, 1.5), with_times=False)
+        self.assertIn("outage p99, all faults: 9.00 s of 2 (limit 2 s on a quiet machine, not judged here)", text)
+
+
 class Statistics(unittest.TestCase):
     def test_percentiles_are_values_that_occurred(self):
         self.assertEqual(report.percentile([3, 1, 2], 0.5), 2)
