@@ -43,9 +43,13 @@ inline VehicleConfig one_radar() {
 inline std::vector<std::string> run_summaries() {
   run::Summary recordings;
   recordings.inputs.recordings = {"radars.pcap"};
-  recordings.inputs.settings_files = {{"alignment_estimator", "a.toml"}, {"detection_corrector", "d.toml"},
-                                      {"ghost_filter", "g.toml"},        {"tracker", "t.toml"},
-                                      {"object_classes", "o.toml"},      {"health", "h.toml"}};
+  recordings.inputs.settings_files = {{"ingest_gateway", "i.toml"},
+                                      {"alignment_estimator", "a.toml"},
+                                      {"detection_corrector", "d.toml"},
+                                      {"ghost_filter", "g.toml"},
+                                      {"tracker", "t.toml"},
+                                      {"object_classes", "o.toml"},
+                                      {"health", "h.toml"}};
   recordings.frames = recording::Counts{};
   recordings.rejected[0] = recordings.noted[0] = recordings.rejected[1] = recordings.noted[1] = {{"wrong length", 3}};
   recordings.timing.wall_s = 2.0;
