@@ -9,7 +9,7 @@
 namespace {
 
 void print(const char* what, const boresight::bench::Copies& copies) {
-  std::printf("%-48s %zu intermediate, %zu decoded (%s)\n", what, copies.intermediate, copies.decoded,
+  std::printf("%-48s %td intermediate, %td decoded (%s)\n", what, copies.intermediate, copies.decoded,
               copies.into_the_sinks_memory ? "in the sink's memory" : "NOT in the sink's memory");
 }
 

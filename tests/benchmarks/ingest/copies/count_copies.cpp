@@ -16,14 +16,12 @@ std::unique_ptr<RadarScan> marked_scan(std::uint32_t detections) {
 
 Copies count(GatewayBench& bench, const Traffic& traffic, std::size_t detections) {
   *bench.sink.scan = RadarScan{};
-  const SentinelPlaces before = find_sentinels(detections);
+  const SentinelPlaces before = find_sentinels();
   bench.take(traffic);
-  const SentinelPlaces after = find_sentinels(detections);
+  const NewPlaces more = new_places(before, find_sentinels(), detections);
   bool all_there = bench.sink.scans == 1;
   for (std::size_t i = 0; i < detections; ++i) all_there &= bench.sink.scan->range_m[i] == sentinel_range_m(i);
-  return {.intermediate = after.on_wire_order - before.on_wire_order,
-          .decoded = after.as_float - before.as_float,
-          .into_the_sinks_memory = all_there};
+  return {.intermediate = more.on_wire_order, .decoded = more.as_float, .into_the_sinks_memory = all_there};
 }
 
 }  // namespace

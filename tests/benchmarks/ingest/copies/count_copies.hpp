@@ -6,8 +6,8 @@
 namespace boresight::bench {
 
 struct Copies {
-  std::size_t intermediate = 0;        ///< copies of the datagrams' bytes
-  std::size_t decoded = 0;             ///< places with the detections as float values: the scan only
+  std::ptrdiff_t intermediate = 0;     ///< copies of the datagrams' bytes
+  std::ptrdiff_t decoded = 0;          ///< places with the detections as float values: the scan only
   bool into_the_sinks_memory = false;  ///< those are in the memory from Sink::begin_scan()
 };
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::uint32_t kPattern = 0x43290000, kMask = 0xFFFF003F;  // 169 … 170 m
 constexpr unsigned kShift = 6;
-constexpr std::size_t kSentinels = 1024;
 
 struct Region {
   std::uintptr_t begin, end;
@@ -37,35 +37,42 @@ std::vector<Region> writable_regions() {
   return regions;
 }
 
-using Counts = std::array<std::size_t, kSentinels>;
+using Counts = std::array<std::size_t, SentinelPlaces::kSentinels>;
 
-std::size_t median(Counts& counts, std::size_t size) {
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(size / 2);
-  std::nth_element(counts.begin(), middle, counts.begin() + static_cast<std::ptrdiff_t>(size));
+std::ptrdiff_t median_difference(const Counts& before, const Counts& after, std::size_t size) {
+  std::array<std::ptrdiff_t, SentinelPlaces::kSentinels> difference{};
+  std::transform(after.begin(), after.end(), before.begin(), difference.begin(), std::minus<std::ptrdiff_t>());
+  const auto middle = difference.begin() + static_cast<std::ptrdiff_t>(size / 2);
+  std::nth_element(difference.begin(), middle, difference.begin() + static_cast<std::ptrdiff_t>(size));
   return *middle;
 }
 
 }  // namespace
 
 float sentinel_range_m(std::size_t i) {
-  return std::bit_cast<float>(kPattern | static_cast<std::uint32_t>(i % kSentinels) << kShift);
+  return std::bit_cast<float>(kPattern | static_cast<std::uint32_t>(i % SentinelPlaces::kSentinels) << kShift);
 }
 
-SentinelPlaces find_sentinels(std::size_t detections) {
-  Counts on_wire_order{}, as_float{};
+SentinelPlaces find_sentinels() {
+  SentinelPlaces places;
   for (const Region& region : writable_regions()) {
     const auto* p = reinterpret_cast<const std::uint8_t*>(region.begin);
     const auto* const end = reinterpret_cast<const std::uint8_t*>(region.end);
     for (; p + sizeof(std::uint32_t) <= end; ++p) {
       std::uint32_t word = 0;
       std::memcpy(&word, p, sizeof(word));
-      if ((word & kMask) == kPattern) ++as_float[(word & ~kPattern) >> kShift];
+      if ((word & kMask) == kPattern) ++places.as_float[(word & ~kPattern) >> kShift];
       word = __builtin_bswap32(word);
-      if ((word & kMask) == kPattern) ++on_wire_order[(word & ~kPattern) >> kShift];
+      if ((word & kMask) == kPattern) ++places.on_wire_order[(word & ~kPattern) >> kShift];
     }
   }
-  detections = std::clamp<std::size_t>(detections, 1, kSentinels);
-  return {median(on_wire_order, detections), median(as_float, detections)};
+  return places;
+}
+
+NewPlaces new_places(const SentinelPlaces& before, const SentinelPlaces& after, std::size_t detections) {
+  detections = std::clamp<std::size_t>(detections, 1, SentinelPlaces::kSentinels);
+  return {median_difference(before.on_wire_order, after.on_wire_order, detections),
+          median_difference(before.as_float, after.as_float, detections)};
 }
 
 }  // namespace boresight::bench

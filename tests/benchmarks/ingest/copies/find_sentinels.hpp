@@ -1,6 +1,7 @@
 // Finds detections in memory by searching for unique values, to count the copies on their path to the scan.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -16,12 +17,19 @@ inline constexpr bool kCanFindSentinels = true;
 /// A range that only detection `i` of 1024 has and that does not occur by chance.
 [[nodiscard]] float sentinel_range_m(std::size_t i);
 
-/// Number of places of a sentinel in this process's memory: the median over the first `detections`, since single copies
-/// may remain on the stack.
+/// Number of places of each sentinel in this process's memory.
 struct SentinelPlaces {
-  std::size_t on_wire_order = 0;  ///< most significant byte first, as in a datagram
-  std::size_t as_float = 0;       ///< as in a scan
+  static constexpr std::size_t kSentinels = 1024;
+  std::array<std::size_t, kSentinels> on_wire_order{};  ///< most significant byte first, as in a datagram
+  std::array<std::size_t, kSentinels> as_float{};       ///< as in a scan
 };
-[[nodiscard]] SentinelPlaces find_sentinels(std::size_t detections);
+[[nodiscard]] SentinelPlaces find_sentinels();
+
+/// Number of places that a sentinel has in `after` beyond those in `before`: the median over the first `detections`,
+/// since parts of old copies remain on the stack and are overwritten.
+struct NewPlaces {
+  std::ptrdiff_t on_wire_order = 0, as_float = 0;
+};
+[[nodiscard]] NewPlaces new_places(const SentinelPlaces& before, const SentinelPlaces& after, std::size_t detections);
 
 }  // namespace boresight::bench
