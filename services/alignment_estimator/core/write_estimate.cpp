@@ -1,6 +1,9 @@
 #include "services/alignment_estimator/core/write_estimate.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
@@ -11,6 +14,20 @@ namespace {
 
 void write_covariance(const Eigen::Matrix4d& covariance, std::array<float, 16>& out) {
   Eigen::Map<Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(out.data()) = covariance.cast<float>();
+}
+
+/// A sensor's axis is a mixture of the vehicle's axes. What it takes from one that is not observable is as uncertain as
+/// before any data: a roll that is known by half would else pass as the pitch of a radar that looks aside.
+Eigen::Matrix4d without_unobservable(const RadarEstimate& estimate, double prior_angle_std_rad) {
+  const std::array<std::uint32_t, 3> bits{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
+                                          alignment_axis::kVehicleYaw};
+  Eigen::Matrix4d covariance = estimate.covariance;
+  for (int axis = 0; axis < 3; ++axis) {
+    double& variance = covariance(axis + 1, axis + 1);
+    if ((estimate.observable & bits[static_cast<std::size_t>(axis)]) != 0) continue;
+    variance = std::max(variance, prior_angle_std_rad * prior_angle_std_rad);
+  }
+  return covariance;
 }
 
 }  // namespace
@@ -56,9 +73,11 @@ void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, dou
 
   out.observable = estimate.observable;
   const double limit = 0.25 * prior_angle_std_rad * prior_angle_std_rad;
-  if (covariance(1, 1) < limit) out.observable |= alignment_axis::kYaw;
-  if (covariance(2, 2) < limit) out.observable |= alignment_axis::kPitch;
-  if (covariance(3, 3) < limit) out.observable |= alignment_axis::kRoll;
+  const Eigen::Matrix4d doubted =
+      to_angles * without_unobservable(estimate, prior_angle_std_rad) * to_angles.transpose();
+  if (doubted(1, 1) < limit) out.observable |= alignment_axis::kYaw;
+  if (doubted(2, 2) < limit) out.observable |= alignment_axis::kPitch;
+  if (doubted(3, 3) < limit) out.observable |= alignment_axis::kRoll;
 
   out.yaw_rate_bias_radps = static_cast<float>(estimate.yaw_rate_bias_radps);
   out.yaw_rate_bias_std_radps = static_cast<float>(estimate.yaw_rate_bias_std_radps);

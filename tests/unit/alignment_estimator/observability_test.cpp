@@ -1,11 +1,14 @@
 // Which parameters the service may report as observable: decided by the geometry of the detections, not their number.
+#include <cmath>
 #include <memory>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/common/geometry/frames.hpp"
 #include "tests/unit/alignment_estimator/synthetic.hpp"
 
 namespace boresight::alignment {
@@ -73,6 +76,30 @@ TEST(Observability, AnyMountingIsAsAccurate) {
     EXPECT_NEAR(e.speed_scale, drive.speed_scale, 5e-4) << mount.yaw_deg << ", " << mount.roll_deg;
     EXPECT_EQ(e.state, AlignmentState::kConverged);
     EXPECT_TRUE(e.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch));
+  }
+}
+
+/// A drive straight ahead determines the vehicle's pitch and yaw well, its roll by half.
+TEST(Observability, HalfKnownRollIsNoPitchOfARadarThatLooksAside) {
+  const double prior_rad = Config{}.windows.priors.rotation_std_rad;
+  RadarEstimate estimate;
+  estimate.observable = alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch;
+  for (const double yaw_deg : {0.0, 50.0, 90.0, 180.0}) {
+    RadarConfig radar;
+    radar.mounting_pose.yaw_rad = yaw_deg * kRadiansPerDegree;
+    estimate.sensor_to_vehicle = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
+    estimate.covariance = Eigen::Vector4d(1e-8, std::pow(0.45 * prior_rad, 2), 1e-6, 1e-6).asDiagonal();
+    AlignmentEstimate out{};
+    write_estimate(radar, estimate, prior_rad, out);
+    const bool looks_along = yaw_deg == 0.0 || yaw_deg == 180.0;
+    EXPECT_TRUE(out.is_observable(alignment_axis::kYaw)) << yaw_deg;
+    EXPECT_EQ(out.is_observable(alignment_axis::kPitch), looks_along) << yaw_deg;
+    EXPECT_EQ(out.is_observable(alignment_axis::kRoll), yaw_deg == 90.0) << yaw_deg;
+    EXPECT_NEAR(std_of(out, 2),
+                std::hypot(0.45 * prior_rad * std::sin(radar.mounting_pose.yaw_rad),
+                           1e-3 * std::cos(radar.mounting_pose.yaw_rad)),
+                1e-6)
+        << "as it was estimated";
   }
 }
 
