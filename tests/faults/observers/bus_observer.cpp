@@ -62,7 +62,7 @@ int observe() {
         fmt::format("{{\"at_ns\":{},\"topic\":\"alignment_estimate\",\"radar\":{},\"sequence\":{},\"yaw_rad\":{:.6f},"
                     "\"yaw_std_rad\":{:.6f}}}\n",
                     runtime::monotonic_now_ns(), estimate.header.source_id, estimate.header.sequence,
-                    estimate.alignment_yaw_rad, std::sqrt(estimate.covariance[kYawVariance])));
+                    estimate.vehicle_yaw_rad, std::sqrt(estimate.vehicle_covariance[kYawVariance])));
   });
   node.on<HealthReport>([](const HealthReport& report) { print(text_of(report)); });
   print(fmt::format("{{\"at_ns\":{},\"topic\":\"attached\"}}\n", runtime::monotonic_now_ns()));
