@@ -61,7 +61,7 @@ name="emulation (TCG)"
 if [ -r /dev/kvm ] && [ -w /dev/kvm ]; then
   # In a shell of its own, which does not report an emulator that aborts.
   (timeout 10 qemu-system-x86_64 -accel kvm -cpu host -m 256 -nodefaults -display none -no-reboot -kernel "$kernel" \
-    -serial "file:$out/kvm.txt" -append "console=ttyS0 panic=-1"; true) </dev/null >/dev/null 2>&1
+    -serial "file:$out/kvm.txt" -append "console=ttyS0 panic=-1" || true) </dev/null >/dev/null 2>&1
   if grep -aq "Linux version" "$out/kvm.txt" 2>/dev/null; then accelerator=(-accel kvm -cpu host); name="KVM"; fi
 fi
 say "kernel $version, $name, load of this machine $(cut -d' ' -f1 /proc/loadavg)"
