@@ -20,7 +20,7 @@ struct VehicleForm {
 [[nodiscard]] Eigen::Vector3d vehicle_angles(const RadarConfig& radar, const Eigen::Matrix3d& sensor_to_vehicle);
 
 /// Writes everything but the header and the key figures. An axis of the sensor is observable once its std is clearly
-/// below `prior_angle_std_rad`.
+/// below `prior_angle_std_rad`, where an axis of the vehicle that is not observable counts as not known at all.
 void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
                     AlignmentEstimate& out);
 

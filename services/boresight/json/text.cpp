@@ -14,7 +14,7 @@ namespace boresight::json {
 
 namespace {
 
-/// The JSON text with \uXXXX in place of each control character. The library escapes only those below U+0020; a
+/// The JSON text with an escape in place of each control character. The library escapes only those below U+0020; a
 /// terminal obeys those from U+0080 to U+009F, too. Only strings contain such characters, so the value stays the same.
 std::string with_escapes(std::string_view rest) {
   std::string escaped;
