@@ -169,6 +169,70 @@ void read_phd(config::Reader table, phd::Parameters& p) {
   p.work_budget = read_work_budget(table, p.work_budget);
 }
 
+/// One number for each class.
+template <std::size_t kSize>
+void read_counts(config::Reader& table, std::string_view key, config::Range allowed, std::array<int, kSize>& values) {
+  std::array<double, kSize> numbers{};
+  std::copy(values.begin(), values.end(), numbers.begin());
+  read_array(table, key, allowed, numbers);
+  for (std::size_t k = 0; k < kSize; ++k) {
+    values[k] = static_cast<int>(numbers[k]);
+    if (static_cast<double>(values[k]) != numbers[k]) table.reject(key, "must be whole numbers");
+  }
+}
+
+void read_classical(config::Reader table, classical::Parameters& p) {
+  std::vector<std::pair<std::string_view, filters::FilterKind>> kinds;
+  for (const std::string_view name : filters::filter_kind_names())
+    kinds.emplace_back(name, *filters::filter_kind(name));
+  p.filter = table.choice("filter", kinds, p.filter);
+  using classical::ShapeCriterion;
+  p.heading.shape.criterion =
+      table.choice("shape_criterion",
+                   std::vector<std::pair<std::string_view, ShapeCriterion>>{{"area", ShapeCriterion::kArea},
+                                                                            {"closeness", ShapeCriterion::kCloseness},
+                                                                            {"variance", ShapeCriterion::kVariance}},
+                   p.heading.shape.criterion);
+  read(table, {{"cluster_radius_m", &p.cluster.radius_m, {0.1, 20.0}},
+               {"cluster_range_rate_gap_mps", &p.cluster.range_rate_gap_mps, {0.01, 20.0}},
+               {"cluster_least_weight", &p.cluster.least_weight, {0.0, 100.0}},
+               {"gate_place_chi2", &p.gate.place_chi2, {1.0, 100.0}},
+               {"gate_range_rate_chi2", &p.gate.range_rate_chi2, {1.0, 100.0}},
+               {"start_points", &p.start.points, {1.0, 100.0}},
+               {"start_strength_db", &p.start.strength_db, {-200.0, 100.0}},
+               {"start_existence", &p.start.existence, {1e-6, 0.5}},
+               {"least_detection_probability", &p.life.least_detection_probability, {0.01, 0.99}},
+               {"least_existence", &p.life.least_existence, {1e-6, 0.5}},
+               {"first_acceleration_std_mps2", &p.motion.first_acceleration_std_mps2, {0.01, 20.0}},
+               {"history_s", &p.heading.history_s, {0.01, 5.0}},
+               {"known_std_rad", &p.heading.known_std_rad, {0.01, 1.0}},
+               {"doppler_least_points", &p.heading.doppler.least_points, {3.0, 32.0}},
+               {"doppler_least_speed_mps", &p.heading.doppler.least_speed_mps, {0.1, 20.0}},
+               {"doppler_interval_rad", &p.heading.doppler.interval_rad, {0.1, 1.5}},
+               {"doppler_outlier_chi2", &p.heading.doppler.outlier_chi2, {1.0, 100.0}},
+               {"shape_least_points", &p.heading.shape.least_points, {5.0, 32.0}},
+               {"shape_face_std_m", &p.heading.shape.face_std_m, {0.01, 5.0}},
+               {"shape_nearest_m", &p.heading.shape.nearest_m, {0.001, 2.0}},
+               {"join_existence", &p.join_existence, {0.01, 0.999}},
+               {"report_existence", &p.report_existence, {1e-6, 0.5}}});
+  constexpr config::Range kLooks{1.0, classical::Looks::kMost};
+  read_counts(table, "confirm_hits", kLooks, p.life.confirm_hits);
+  read_counts(table, "confirm_looks", kLooks, p.life.confirm_looks);
+  read_counts(table, "delete_misses", kLooks, p.life.delete_misses);
+  read_counts(table, "delete_looks", kLooks, p.life.delete_looks);
+  read_array(table, "coast_s", {0.01, 100.0}, p.life.coast_s);
+  read_array(table, "jerk_density_m2ps5", {1e-6, 1e3}, p.motion.jerk_density_m2ps5);
+  read_array(table, "acceleration_time_s", {0.01, 100.0}, p.motion.acceleration_time_s);
+  for (std::size_t k = 0; k < p.life.confirm_hits.size(); ++k) {
+    if (p.life.confirm_hits[k] > p.life.confirm_looks[k]) {
+      table.reject("confirm_hits", "must not exceed confirm_looks");
+    }
+    if (p.life.delete_misses[k] > p.life.delete_looks[k]) {
+      table.reject("delete_misses", "must not exceed delete_looks");
+    }
+  }
+}
+
 void read_capacity(config::Reader table, pmbm::Capacity& c) {
   const auto capacity = [&table](std::string_view key, config::Range allowed, std::size_t& value) {
     value = static_cast<std::size_t>(table.integer(key, allowed, static_cast<std::int64_t>(value)));
@@ -195,6 +259,7 @@ Config read_config(config::Reader root) {
   read_model(root, c.model);
   read_search(root.table("search"), c.pmbm);
   read_phd(root.table("phd"), c.phd);
+  read_classical(root.table("classical"), c.classical);
   read_capacity(root.table("capacity"), c.capacity);
   BoxParameters& x = c.model.box;
   read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},

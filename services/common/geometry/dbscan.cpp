@@ -54,10 +54,10 @@ void Dbscan::fill_buckets() {
   std::copy_n(bucket_begin_.begin() + 1, buckets, free_end_.begin());
 }
 
-bool Dbscan::is_core(std::size_t point, std::size_t min_points) const {
+bool Dbscan::is_core(std::size_t point) const {
   const Eigen::Vector2d p = points_[point];
   const double square = radius_m_ * radius_m_;
-  std::size_t found = 0;
+  double found = 0.0;
   const std::int32_t mask = side_ - 1;
   for (const std::int32_t beside : {0, -1, 1}) {
     for (const std::int32_t above : {0, -1, 1}) {
@@ -66,11 +66,12 @@ bool Dbscan::is_core(std::size_t point, std::size_t min_points) const {
       const std::uint32_t end = bucket_begin_[bucket + 1];
       for (std::uint32_t k = bucket_begin_[bucket]; k < end; ++k) {
         if ((entries_[k].position - p).squaredNorm() > square) continue;
-        if (++found >= min_points) return true;
+        found += weights_.empty() ? 1.0 : weights_[entries_[k].point];
+        if (found >= least_weight_) return true;
       }
     }
   }
-  return found >= min_points;
+  return found >= least_weight_;
 }
 
 void Dbscan::take_around(std::size_t core, std::int32_t cluster) {
@@ -98,15 +99,22 @@ void Dbscan::take_around(std::size_t core, std::int32_t cluster) {
 }
 
 std::size_t Dbscan::cluster(std::span<const Eigen::Vector2d> points, double radius_m, std::size_t min_points) {
+  return cluster(points, {}, radius_m, static_cast<double>(min_points));
+}
+
+std::size_t Dbscan::cluster(std::span<const Eigen::Vector2d> points, std::span<const double> weights, double radius_m,
+                            double least_weight) {
   points_ = points;
+  weights_ = weights;
   radius_m_ = radius_m;
+  least_weight_ = least_weight;
   count_ = std::min(points.size(), labels_.size());
   fill_buckets();
   std::fill_n(labels_.begin(), count_, kUnvisited);
   std::int32_t clusters = 0;
   for (std::size_t seed = 0; seed < count_; ++seed) {
     if (labels_[seed] != kUnvisited) continue;
-    if (!is_core(seed, min_points)) {
+    if (!is_core(seed)) {
       labels_[seed] = kNoise;
       continue;
     }
@@ -115,8 +123,7 @@ std::size_t Dbscan::cluster(std::span<const Eigen::Vector2d> points, double radi
     while (!stack_.empty()) {
       const std::uint32_t point = stack_.back();
       stack_.pop_back();
-      if (is_core(point, min_points))
-        take_around(point, clusters);  // other points belong to the cluster, but do not extend it
+      if (is_core(point)) take_around(point, clusters);  // other points belong to the cluster, but do not extend it
     }
     ++clusters;
   }

@@ -24,14 +24,17 @@ class Dbscan {
   /// all points within the radius of these. Points must be finite; those beyond the capacity are ignored. Returns the
   /// number of clusters.
   std::size_t cluster(std::span<const Eigen::Vector2d> points, double radius_m, std::size_t min_points);
+  /// The same with a weight of each point, not negative: a core point has at least `least_weight` within the radius.
+  std::size_t cluster(std::span<const Eigen::Vector2d> points, std::span<const double> weights, double radius_m,
+                      double least_weight);
 
   /// Labels of the points of the last call, in their order.
   [[nodiscard]] std::span<const std::int32_t> labels() const { return {labels_.data(), count_}; }
 
  private:
   void fill_buckets();
-  /// Whether a point has at least `min_points` within the radius, itself included.
-  [[nodiscard]] bool is_core(std::size_t point, std::size_t min_points) const;
+  /// Whether a point has at least the least weight within the radius, itself included.
+  [[nodiscard]] bool is_core(std::size_t point) const;
   /// Assigns points without a cluster within the radius of a core point to this cluster.
   void take_around(std::size_t core, std::int32_t cluster);
 
@@ -41,7 +44,8 @@ class Dbscan {
     std::uint32_t point;
   };
   std::span<const Eigen::Vector2d> points_;
-  double radius_m_ = 1.0;
+  std::span<const double> weights_;  // empty: each point weighs 1
+  double radius_m_ = 1.0, least_weight_ = 1.0;
   std::size_t count_ = 0;
   std::int32_t side_ = 0;  // of the square of buckets
   /// In entries_: a bucket's begin, and the end of its points without a cluster.

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "services/tracker/core/classical/parameters.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
@@ -17,6 +18,7 @@ struct Config {
   pmbm::Parameters pmbm{.min_existence = 0.07, .join_existence = 0.95};
   pmbm::Capacity capacity;
   phd::Parameters phd;
+  classical::Parameters classical;
   ReportParameters report;
 };
 

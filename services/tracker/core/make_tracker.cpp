@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "services/tracker/core/classical/classical_filter.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
 #include "services/tracker/core/model/scenario_model.hpp"
 #include "services/tracker/core/output/ellipse_reporter.hpp"
@@ -18,13 +19,17 @@ namespace {
 std::unique_ptr<Filter> make_filter(std::string_view name, const Config& config) {
   if (name == "pmbm") return std::make_unique<pmbm::PmbmFilter>(config.pmbm, config.capacity);
   if (name == "phd") return std::make_unique<phd::PhdFilter>(config.phd, phd::Capacity{});
+  if (name == "classical") {
+    return std::make_unique<classical::ClassicalFilter>(config.classical, config.capacity.objects,
+                                                        config.capacity.measurements);
+  }
   throw std::invalid_argument("unknown tracker \"" + std::string(name) + "\"");
 }
 
 }  // namespace
 
 std::vector<std::string> tracker_names() {
-  return {"pmbm", "phd"};
+  return {"pmbm", "phd", "classical"};
 }
 
 std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const VehicleConfig& vehicle,

@@ -13,7 +13,7 @@
 
 namespace boresight::tracking {
 
-/// "pmbm" or "phd" with the radar model of the vehicle. Throws std::invalid_argument for another name.
+/// "pmbm", "phd" or "classical" with the radar model of the vehicle. Throws std::invalid_argument for another name.
 [[nodiscard]] std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const VehicleConfig& vehicle,
                                                                const Config& config);
 

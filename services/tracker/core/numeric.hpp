@@ -11,6 +11,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kLeastProbability = 1e-9;
 /// The same of densities and likelihoods; float holds it, too.
 inline constexpr double kLeastDensity = 1e-30;
+/// Logs of ratios are no larger where exp is taken.
+inline constexpr double kMostLog = 600.0;
 /// Distances are no smaller where a direction is divided by them.
 inline constexpr double kLeastRange_m = 1e-3;
 

@@ -19,6 +19,7 @@ struct Measurement {
   Real partner = 0;          ///< chance that the scan shows the object whose side lobe it may be
   Real wide_share = 0;       ///< share of that clutter which is objects' detections of other range rates
   Real mirror = 0;           ///< probability that it is a mirror image, by the ghost filter
+  Real moving = 1;           ///< probability of a moving object's direct echo, by the ghost filter without tracks
   Real strength_db = 0;      ///< over the radar's usual detection
   Real strengths = 0;        ///< 1 where the radar states the strength
 };

@@ -307,10 +307,7 @@ Real Prediction<Real>::range_rate_distance(const Measurement<Real>& z) const {
 }
 
 template <typename Real>
-Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Cell<Real>& cell) {
-  Component<Real> out = prior;
-  const Real n = cell.n;
-  // The readings as one measurement, by their moments.
+typename Prediction<Real>::Centre Prediction<Real>::centre(const Cell<Real>& cell) {
   const auto weights = weights_of(cell);
   Vector2<Real> offset;
   Symmetric2<Real> r;
@@ -320,11 +317,19 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
     const Reading<Real>& reading = view_.readings[k];
     const Symmetric2<Real> scatter =
         reading.knows_scatter ? view_.held * reading.scatter_m2 + view_.noise_m2 : held_scatter_;
-    r = r + weights[k] * ((Real(1) / n) * scatter + reading.covariance_m2 + outer(reading.offset_m - offset));
+    r = r + weights[k] * ((Real(1) / cell.n) * scatter + reading.covariance_m2 + outer(reading.offset_m - offset));
     if (!reading.knows_scatter) by_extent += weights[k];
   }
+  return {cell.mean() - offset, r, by_extent};
+}
+
+template <typename Real>
+Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Cell<Real>& cell) {
+  Component<Real> out = prior;
+  const Real n = cell.n;
+  const auto [place, r, by_extent] = centre(cell);
   const Symmetric2<Real> s = prior.position_covariance + r, information = inverse(s);
-  const Vector2<Real> e = cell.mean() - prior.position_m - offset, w = information * e;
+  const Vector2<Real> e = place - prior.position_m, w = information * e;
   const Matrix2<Real> pv = prior.position_velocity_covariance, vp = transpose(pv);
   out.position_m = prior.position_m + prior.position_covariance * w;
   out.velocity_mps = prior.velocity_mps + vp * w;

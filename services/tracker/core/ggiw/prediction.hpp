@@ -79,6 +79,13 @@ class Prediction {
   /// Of Absence.
   [[nodiscard]] Real missed() const { return absence_.probability(); }
 
+  /// The cell as one measurement of the tracked point: the readings by their moments.
+  struct Centre {
+    Vector2<Real> position_m;
+    Symmetric2<Real> covariance_m2;
+    Real by_extent = 1;  ///< probability that the detections scatter with the extent
+  };
+  [[nodiscard]] Centre centre(const Cell<Real>& cell);
   /// The component with the cell as its detections.
   [[nodiscard]] Component<Real> updated(const Component<Real>& component, const Cell<Real>& cell);
   /// The component after a scan that shows nothing of it.

@@ -169,6 +169,13 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
   weigh_classes(m);
 }
 
+void BoxEstimator::observe_heading(BoxMemory& m, const Heading& z) const {
+  if (!knows_heading(m)) return;
+  const double gain = m.heading_variance_rad2 / (m.heading_variance_rad2 + z.variance_rad2);
+  m.heading_rad = geometry::wrap_angle(m.heading_rad + gain * geometry::wrap_angle(z.rad - m.heading_rad));
+  m.heading_variance_rad2 *= 1.0 - gain;
+}
+
 BoxEstimator::Place BoxEstimator::place(const BoxMemory& m, const Vector2<double>& from_point_m,
                                         const Symmetric2<double>& covariance_m2) const {
   const Eigen::Matrix2d to_box = rotation(m.heading_rad).transpose();

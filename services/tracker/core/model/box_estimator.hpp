@@ -22,6 +22,7 @@
 #include "services/common/extended_object/object_classes.hpp"
 #include "services/common/extended_object/reflection_model.hpp"
 #include "services/tracker/core/ggiw/component.hpp"
+#include "services/tracker/core/model/heading.hpp"
 #include "services/tracker/core/model/road.hpp"
 #include "services/tracker/core/model/turning.hpp"
 
@@ -117,6 +118,8 @@ class BoxEstimator {
                                 const Viewpoint& viewpoint) const;
   void update(BoxMemory& memory, const Component<double>& object, const BoxObservation& scan,
               const ClassViews& views) const;
+  /// A heading of the length axis, independent of the course; it corrects a heading that is known.
+  void observe_heading(BoxMemory& memory, const Heading& heading) const;
   [[nodiscard]] Box box(const BoxMemory& memory, const Component<double>& object,
                         const Vector2<double>& sensor_m) const;
   /// Of an object that moves.

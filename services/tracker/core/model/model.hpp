@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/tracker/core/ggiw/component.hpp"
 #include "services/tracker/core/ggiw/prediction.hpp"
+#include "services/tracker/core/model/heading.hpp"
 
 namespace boresight::tracking {
 
@@ -37,6 +39,10 @@ struct ObjectEstimate {
   /// Share of its detections that are another object's by their weights. Of an object without detections: 1 if another
   /// has detections in its gate.
   double shared = 0.0;
+  /// By the filter's own rule; without one, the reader of its existence decides.
+  std::optional<bool> confirmed;
+  /// Of its length axis, from the outline of its detections; independent of its course.
+  std::optional<Heading> shape_heading;
 };
 
 class Model {
@@ -68,6 +74,10 @@ class Model {
   [[nodiscard]] virtual double log_odds_of_part(const Component<double>& whole, const Component<double>& part) = 0;
   /// The object `whole` has the part from now on; what is known of it is that of the object `label`.
   virtual void join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) = 0;
+  /// Probabilities of an object's classes, in the order of RoadUserClass; empty where classes are not known.
+  [[nodiscard]] virtual std::span<const double> class_probabilities(std::uint32_t) const { return {}; }
+  /// Place of the scan's sensor in local axes.
+  [[nodiscard]] virtual Vector2<double> sensor_m() const { return {}; }
   /// Covariance of detections relative to the extent.
   [[nodiscard]] virtual double spread() const = 0;
   /// Whether two measurements may be of one new object.

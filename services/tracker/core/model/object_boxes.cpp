@@ -98,6 +98,7 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
                            r.predicted_m,
                            r.predicted_covariance_m2};
     estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : kNotSeen);
+    if (e.shape_heading) estimator_.observe_heading(r.memory, *e.shape_heading);
     if (squared_norm(e.component->velocity_mps) <= 0.0) continue;
     traffic_.add(estimator_.course(*e.component), road_heading_rad,
                  e.existence * BoxEstimator::vehicle_probability(r.memory) * std::max(0.0, elapsed_s));

@@ -133,6 +133,7 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     z.position_m = axes_.to_local(at);
     z.sight = axes_.to_local(sight);
     z.range_rate_mps = rate_mps;
+    z.moving = 1.0 / (1.0 + std::exp(-ratio));
     z.mirror = static_cast<double>(scan.probability(Provenance::kGhostType1, i) +
                                    scan.probability(Provenance::kGhostType2, i));
     const auto strength_db = static_cast<double>(scan.rcs_dbsm[i]);

@@ -53,6 +53,8 @@ class RadarModel final : public Model {
   [[nodiscard]] Component<double> newborn(const Cell<double>& cell) override;
   [[nodiscard]] double log_odds_of_part(const Component<double>& whole, const Component<double>& part) override;
   void join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) override;
+  [[nodiscard]] std::span<const double> class_probabilities(std::uint32_t label) const override;
+  [[nodiscard]] Vector2<double> sensor_m() const override { return sensor_m_; }
   [[nodiscard]] double spread() const override { return parameters_.detection.spread; }
   [[nodiscard]] bool are_linked(const Measurement<double>& a, const Measurement<double>& b) const override;
   [[nodiscard]] double link_distance_m() const override { return parameters_.birth.link_distance_m; }

@@ -37,6 +37,11 @@ const BoxMemory* RadarModel::memory(std::uint32_t label) const {
   return object == nullptr ? nullptr : &object->memory;
 }
 
+std::span<const double> RadarModel::class_probabilities(std::uint32_t label) const {
+  const BoxMemory* object = memory(label);
+  return object == nullptr ? std::span<const double>{} : object->probability;
+}
+
 double RadarModel::in_view(const Component<double>& c) const {
   const DetectionParameters& p = parameters_.detection;
   const Vector2<double> d = c.position_m - sensor_m_;

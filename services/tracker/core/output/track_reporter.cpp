@@ -92,8 +92,8 @@ void TrackReporter::write_track(const ObjectEstimate& e, const Record& r, Track&
   const Vector2<double> velocity = axes.to_vehicle(c.velocity_mps);
   t = {};
   t.tracking_id = e.id;
-  t.status =
-      r.held_log_odds >= log_odds(parameters_.confirmed_existence) ? TrackStatus::kConfirmed : TrackStatus::kTentative;
+  const bool is_confirmed = e.confirmed.value_or(r.held_log_odds >= log_odds(parameters_.confirmed_existence));
+  t.status = is_confirmed ? TrackStatus::kConfirmed : TrackStatus::kTentative;
   t.update = e.detected ? TrackUpdate::kMeasured : TrackUpdate::kPredicted;
   const double speed_mps = std::sqrt(squared_norm(velocity));
   t.movement = speed_mps < parameters_.stopped_speed_mps ? MovementState::kStopped : MovementState::kMoving;

@@ -14,7 +14,7 @@ namespace boresight::tracking {
 struct ReportParameters {
   double confirmed_existence = 0.9;   ///< from here on a track's status is confirmed
   double hold_log_odds_per_s = 25.0;  ///< the log odds that decide the status fall no faster
-  double least_existence = 0.05;      ///< tracks below it are not published
+  double least_existence = 0.02;      ///< tracks below it are not published
   double stopped_speed_mps = 0.5;     ///< below it a track is reported as stopped
   DetectabilityParameters flags;
 };

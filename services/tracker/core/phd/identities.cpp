@@ -108,8 +108,15 @@ void PhdFilter::report() {
     const pmbm::LocalHypothesis& local = store_.pool(heaviest_[k]).front();
     const double existence = parameters_.as_published ? std::min(1.0, identity.weight) : identity.existence;
     if (existence < parameters_.report_existence) continue;
-    estimates_.push_back({identity.id, existence * local.component.source.object, existence, local.detections > 0.0,
-                          local.detections, local.scatter, &local.component, local.mean_m});
+    ObjectEstimate& e = estimates_.emplace_back();
+    e.id = identity.id;
+    e.existence = existence * local.component.source.object;
+    e.source_existence = existence;
+    e.detected = local.detections > 0.0;
+    e.detections = local.detections;
+    e.scatter = local.scatter;
+    e.component = &local.component;
+    e.mean_m = local.mean_m;
   }
   std::sort(estimates_.begin(), estimates_.end(), [](const ObjectEstimate& a, const ObjectEstimate& b) {
     return a.existence != b.existence ? a.existence > b.existence : a.id < b.id;
