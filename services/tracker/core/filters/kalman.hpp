@@ -1,4 +1,4 @@
-// Kalman filter (Kalman 1960) and extended Kalman filter, by covariance with the symmetric update of Joseph.
+// Kalman filter (Kalman 1960) and extended Kalman filter, by covariance with the form of Bucy and Joseph 1968.
 // Equations: docs/algorithms/tracking.md (T26).
 #pragma once
 
