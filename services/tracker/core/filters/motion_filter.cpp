@@ -123,6 +123,7 @@ bool MotionFilter::update_cartesian(const LinearMeasurement<double, 6, M>& measu
 
 bool MotionFilter::update(const Eigen::Vector2d& position_m, const Eigen::Matrix2d& covariance_m2,
                           const std::optional<RangeRate>& range_rate, const Eigen::Vector2d& sensor_m) {
+  if (!sensor_m.allFinite() || (range_rate && !range_rate->line_of_sight.allFinite())) return false;
   const auto by_place = [&]<int M>(const LinearMeasurement<double, 6, M>& linear) {
     if (auto* kalman = std::get_if<Kalman<double, 6>>(&filter_); kalman != nullptr) {
       const auto input = measured<M>(position_m, covariance_m2, range_rate);
