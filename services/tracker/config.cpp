@@ -198,7 +198,6 @@ void read_classical(config::Reader table, classical::Parameters& p) {
                {"cluster_least_weight", &p.cluster.least_weight, {0.0, 100.0}},
                {"gate_place_chi2", &p.gate.place_chi2, {1.0, 100.0}},
                {"gate_range_rate_chi2", &p.gate.range_rate_chi2, {1.0, 100.0}},
-               {"start_points", &p.start.points, {1.0, 100.0}},
                {"start_strength_db", &p.start.strength_db, {-200.0, 100.0}},
                {"start_existence", &p.start.existence, {1e-6, 0.5}},
                {"least_detection_probability", &p.life.least_detection_probability, {0.01, 0.99}},
@@ -206,15 +205,21 @@ void read_classical(config::Reader table, classical::Parameters& p) {
                {"first_acceleration_std_mps2", &p.motion.first_acceleration_std_mps2, {0.01, 20.0}},
                {"history_s", &p.heading.history_s, {0.01, 5.0}},
                {"known_std_rad", &p.heading.known_std_rad, {0.01, 1.0}},
-               {"doppler_least_points", &p.heading.doppler.least_points, {3.0, 32.0}},
                {"doppler_least_speed_mps", &p.heading.doppler.least_speed_mps, {0.1, 20.0}},
                {"doppler_interval_rad", &p.heading.doppler.interval_rad, {0.1, 1.5}},
                {"doppler_outlier_chi2", &p.heading.doppler.outlier_chi2, {1.0, 100.0}},
-               {"shape_least_points", &p.heading.shape.least_points, {5.0, 32.0}},
                {"shape_face_std_m", &p.heading.shape.face_std_m, {0.01, 5.0}},
                {"shape_nearest_m", &p.heading.shape.nearest_m, {0.001, 2.0}},
                {"join_existence", &p.join_existence, {0.01, 0.999}},
                {"report_existence", &p.report_existence, {1e-6, 0.5}}});
+  const auto points = [&table](std::string_view key, config::Range allowed, auto& value) {
+    value = static_cast<std::remove_reference_t<decltype(value)>>(
+        table.integer(key, allowed, static_cast<std::int64_t>(value)));
+  };
+  constexpr auto kHistory = static_cast<double>(classical::History::kCapacity);
+  points("start_points", {1, 100}, p.start.points);
+  points("doppler_least_points", {3, kHistory}, p.heading.doppler.least_points);
+  points("shape_least_points", {5, kHistory}, p.heading.shape.least_points);
   constexpr config::Range kLooks{1.0, classical::Looks::kMost};
   read_counts(table, "confirm_hits", kLooks, p.life.confirm_hits);
   read_counts(table, "confirm_looks", kLooks, p.life.confirm_looks);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +23,7 @@ std::vector<double> numbers(const Config& config) {
   const MotionParameters& k = config.model.motion;
   const pmbm::Parameters& p = config.pmbm;
   const pmbm::Capacity& m = config.capacity;
+  const classical::Parameters& a = config.classical;
   std::vector<double> all = {d.detection_probability,
                              d.view_edge_rad,
                              d.range_edge_m,
@@ -126,6 +128,28 @@ std::vector<double> numbers(const Config& config) {
                              config.phd.object_probability,
                              config.phd.report_existence,
                              static_cast<double>(config.phd.work_budget),
+                             a.cluster.radius_m,
+                             a.cluster.range_rate_gap_mps,
+                             a.cluster.least_weight,
+                             a.gate.place_chi2,
+                             a.gate.range_rate_chi2,
+                             static_cast<double>(a.start.points),
+                             a.start.strength_db,
+                             a.start.existence,
+                             a.life.least_detection_probability,
+                             a.life.least_existence,
+                             a.motion.first_acceleration_std_mps2,
+                             a.heading.history_s,
+                             a.heading.known_std_rad,
+                             static_cast<double>(a.heading.doppler.least_points),
+                             a.heading.doppler.least_speed_mps,
+                             a.heading.doppler.interval_rad,
+                             a.heading.doppler.outlier_chi2,
+                             static_cast<double>(a.heading.shape.least_points),
+                             a.heading.shape.face_std_m,
+                             a.heading.shape.nearest_m,
+                             a.join_existence,
+                             a.report_existence,
                              config.model.box.evidence_share,
                              config.model.box.stray_share,
                              config.model.box.stray_m,
@@ -180,6 +204,40 @@ TEST(TrackerConfig, EveryKeyIsReadIntoItsPlace) {
   EXPECT_EQ(std::vector({c.measurements, c.objects, c.local_hypotheses, c.group_objects, c.group_measurements, c.rows,
                          c.candidates}),
             (std::vector<std::size_t>{105, 107, 102, 103, 104, 5, 106}));
+}
+
+TEST(TrackerConfig, RulesOfTheClassicalChainAreReadForEachClass) {
+  const auto rules = [](const Config& config) {
+    const classical::Parameters& a = config.classical;
+    std::vector<double> all;
+    for (const auto* values :
+         {&a.life.confirm_hits, &a.life.confirm_looks, &a.life.delete_misses, &a.life.delete_looks}) {
+      all.insert(all.end(), values->begin(), values->end());
+    }
+    for (const auto* values : {&a.life.coast_s, &a.motion.jerk_density_m2ps5, &a.motion.acceleration_time_s}) {
+      all.insert(all.end(), values->begin(), values->end());
+    }
+    return all;
+  };
+  EXPECT_EQ(rules(read_config(config::Reader::open(kShipped))), rules(Config{}));
+  const Config config = parsed(
+      "[classical]\nfilter = \"srukf\"\nshape_criterion = \"area\"\nconfirm_hits = [1, 2, 3, 4, 5]\n"
+      "confirm_looks = [6, 7, 8, 9, 10]\ndelete_misses = [11, 12, 13, 14, 15]\ndelete_looks = [16, 17, 18, 19, 20]\n"
+      "coast_s = [21, 22, 23, 24, 25]\njerk_density_m2ps5 = [26, 27, 28, 29, 30]\n"
+      "acceleration_time_s = [31, 32, 33, 34, 35]\n");
+  std::vector<double> expected(35);
+  std::iota(expected.begin(), expected.end(), 1.0);
+  EXPECT_EQ(rules(config), expected);
+  EXPECT_EQ(config.classical.filter, filters::FilterKind::kSquareRootUnscented);
+  EXPECT_EQ(config.classical.heading.shape.criterion, classical::ShapeCriterion::kArea);
+}
+
+TEST(TrackerConfig, RulesOfTheClassicalChainThatCannotBeMetAreRefused) {
+  EXPECT_THROW(static_cast<void>(parsed("[classical]\nconfirm_hits = [3, 3, 6, 3, 3]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[classical]\ndelete_looks = [32, 31, 32, 32, 32]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[classical]\nconfirm_hits = [3, 3, 2.5, 3, 3]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[classical]\nconfirm_hits = [3, 3, 3, 3]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[classical]\nfilter = \"alpha_beta\"")), config::Error);
 }
 
 TEST(TrackerConfig, ClutterTableIsRead) {

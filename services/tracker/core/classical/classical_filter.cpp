@@ -234,7 +234,7 @@ void ClassicalFilter::find_heading(const Model& model, std::size_t k) {
 void ClassicalFilter::start(Model& model) {
   for (std::size_t c = 0; c < number_of_clusters_; ++c) {
     const Cell<double>& cell = clusters_.cell(c);
-    if (is_used_[c] != 0 || cell.n < parameters_.start.points) continue;
+    if (is_used_[c] != 0 || clusters_.members(c).size() < static_cast<std::size_t>(parameters_.start.points)) continue;
     if (cell.strengths > 0.0 && cell.strength_sum < parameters_.start.strength_db * cell.strengths) continue;
     members_.clear();
     for (const std::size_t i : clusters_.members(c)) members_.push_back(model.measurements()[i]);

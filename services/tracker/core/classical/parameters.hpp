@@ -6,6 +6,7 @@
 
 #include "services/common/extended_object/object_classes.hpp"
 #include "services/tracker/core/classical/heading/doppler_heading.hpp"
+#include "services/tracker/core/classical/heading/heading.hpp"
 #include "services/tracker/core/classical/heading/l_shape.hpp"
 #include "services/tracker/core/classical/looks.hpp"
 #include "services/tracker/core/filters/motion_filter.hpp"
@@ -28,7 +29,7 @@ struct GateParameters {
 };
 
 struct StartParameters {
-  double points = 1.0;         ///< detections of a cluster that begins a track
+  int points = 1;              ///< detections of a cluster that begins a track
   double strength_db = -30.0;  ///< least mean strength over the radar's usual detection
   double existence = 0.005;    ///< least probability that the cluster is an object or a lasting source
 };
@@ -41,7 +42,7 @@ struct LifeParameters {
   ByClass<int> delete_looks{32, 32, 32, 32, 32};     ///< … of t looks
   ByClass<double> coast_s{3.0, 3.0, 3.0, 3.0, 3.0};  ///< longest prediction without a detection
   double least_detection_probability = 0.5;          ///< of a scan that is a look
-  double least_existence = 0.003;                     ///< a track below it ends
+  double least_existence = 0.003;                    ///< a track below it ends
 };
 
 struct MotionNoise {

@@ -25,7 +25,7 @@ double direction_variance(const Eigen::Vector2d& velocity, const Eigen::Matrix2d
 
 std::optional<DopplerHeading> doppler_line(std::span<const HistoryPoint> points, const DopplerParameters& parameters,
                                            double turn_mps) {
-  if (static_cast<double>(points.size()) < parameters.least_points) return std::nullopt;
+  if (points.size() < parameters.least_points) return std::nullopt;
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const HistoryPoint& p : points) {
@@ -50,7 +50,7 @@ std::optional<DopplerHeading> doppler_line(std::span<const HistoryPoint> points,
 
 std::optional<DopplerHeading> interval_search(std::span<const HistoryPoint> points, double near_rad,
                                               const DopplerParameters& parameters, double turn_mps) {
-  if (static_cast<double>(points.size()) < parameters.least_points) return std::nullopt;
+  if (points.size() < parameters.least_points) return std::nullopt;
   constexpr std::size_t kSteps = 33;
   std::array<double, kSteps> chi2{}, speed{};
   const auto direction = [&](std::size_t k) {

@@ -4,6 +4,7 @@
 // unknown turn rate as a part of their variance.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -17,7 +18,7 @@ struct DopplerHeading {
 };
 
 struct DopplerParameters {
-  double least_points = 3.0;     ///< fewer do not show an outlier
+  std::size_t least_points = 3;  ///< fewer do not show an outlier
   double least_speed_mps = 1.0;  ///< a slower body shows its noise
   double interval_rad = 0.8;     ///< half of the interval that is searched
   double outlier_chi2 = 9.0;     ///< squared deviation of a range rate that is not the body's

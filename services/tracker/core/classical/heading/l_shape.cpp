@@ -78,7 +78,7 @@ double score(const Outline& outline, std::span<const HistoryPoint> points, const
 
 std::optional<Heading> l_shape_heading(std::span<const HistoryPoint> points, double near_rad,
                                        const ShapeParameters& parameters) {
-  if (static_cast<double>(points.size()) < parameters.least_points) return std::nullopt;
+  if (points.size() < parameters.least_points) return std::nullopt;
   std::array<double, kDirections> chi2{};
   double best = -std::numeric_limits<double>::infinity(), least = -best;
   std::size_t winner = 0;
@@ -98,9 +98,9 @@ std::optional<Heading> l_shape_heading(std::span<const HistoryPoint> points, dou
     }
     least = std::min(least, chi2[k]);
   }
-  // More scatter than the deviations say makes the direction less sure by as much.
-  const double scale = std::max(
-      1.0, least / (static_cast<double>(points.size()) - 4.0 > 0.0 ? static_cast<double>(points.size()) - 4.0 : 1.0));
+  // More scatter than the deviations say makes the direction less sure by as much. An outline has four parameters.
+  const double freedom = std::max(1.0, static_cast<double>(points.size()) - 4.0),
+               scale = std::max(1.0, least / freedom);
   const auto direction_rad = [](std::size_t k) {
     return (static_cast<double>(k) - 0.5 * static_cast<double>(kDirections)) * kStep_rad;
   };

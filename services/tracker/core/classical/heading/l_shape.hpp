@@ -11,6 +11,7 @@
 // over the variance of a distance.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -21,10 +22,10 @@ namespace boresight::tracking::classical {
 enum class ShapeCriterion { kArea, kCloseness, kVariance };
 
 struct ShapeParameters {
-  ShapeCriterion criterion = ShapeCriterion::kCloseness;
-  double least_points = 6.0;  ///< fewer have no outline
-  double face_std_m = 0.3;    ///< of a reflection about its face, beside the radar's noise
-  double nearest_m = 0.1;     ///< d₀
+  ShapeCriterion criterion = ShapeCriterion::kVariance;
+  std::size_t least_points = 6;  ///< fewer have no outline
+  double face_std_m = 0.7;       ///< of a reflection about its face, beside the radar's noise
+  double nearest_m = 0.1;        ///< d₀
 };
 
 /// The length axis up to multiples of π/2, as the one nearest to `near_rad`. Empty with too few points. Does not
