@@ -43,6 +43,7 @@ MISSING_INPUT = (
     "score DRIVE --truth ABSENT",
     "report LIVE --vehicle demo --truth ABSENT",
     "track --measurements ABSENT --params ABSENT --out OUT",
+    "track --measurements ABSENT --tracker srukf --out OUT",
 )
 # A wrong command line or configuration: exit code 2, and the message contains the second text.
 USAGE = (
@@ -80,6 +81,11 @@ USAGE = (
     ("simulate --vehicle demo --config RECORD --out OUT", "is a file; give the folder"),
     ("supervise --vehicle absent", "names there: alignment_drive, "),
     ("track --measurements x --params y --out z --tracker absent", "--tracker"),
+    ("track --measurements x --out z", "--params is required for the tracker pmbm"),
+    ("track --measurements x --params y --out z --tracker srukf", "--params is an option of pmbm and phd"),
+    ("track --measurements x --params y --out z --figure f.svg", "--figure is an option of the filters kalman, ekf"),
+    ("track --measurements x --out z --tracker ukf --step 0", "--step"),
+    ("track --measurements x --out z --tracker ukf --sigma-points 1 2 -6", "--sigma-points: ALPHA² · (6 + KAPPA) must be positive"),
     ("catalogue --roudi --markdown", "--markdown"),
     ("vehicle", "a command is missing"),
     ("vehicle use", "vehicle is required"),
@@ -111,6 +117,8 @@ NO_ROOM = (
     ("simulate --alignment-drive city --duration 5 --out FULL/tables", "FULL/tables/"),
     ("simulate --list > /dev/full", "standard output"),
     ("supervise --vehicle demo --logs /proc/absent", "/proc/absent"),
+    ("track --measurements ONE_OBJECT --tracker srukf --out FULL/estimates.csv", "FULL/estimates.csv"),
+    ("track --measurements ONE_OBJECT --tracker srukf --out - > /dev/full", "standard output"),
 )
 
 failures = 0
@@ -126,7 +134,7 @@ def check(what, is_true, detail=""):
 def paths(text):
     for name, path in (("ABSENT", TMP / "absent.pcap"), ("TABLES", TABLES), ("DRIVE", DRIVE), ("FULL", FULL),
                        ("RECORD", TMP / "record.txt"), ("LIVE", TMP / "live"), ("PLATE", TMP / "plate.csv"), ("OUT", TMP / "unused"),
-                       ("REFLECTORS", TMP / "reflectors.csv"), ("PIPE", TMP / "pipe"), ("MINE", TMP / "mine")):
+                       ("REFLECTORS", TMP / "reflectors.csv"), ("ONE_OBJECT", TMP / "one_object.csv"), ("PIPE", TMP / "pipe"), ("MINE", TMP / "mine")):
         text = re.sub(rf"\b{name}\b", str(path), text)
     return text
 
@@ -151,6 +159,8 @@ def prepare():
         f"{tilt},{30 - tilt * tilt + 0.1 * (scan % 3)},{0.01 * (scan % 5)}\n" for tilt in range(-3, 4) for scan in range(20)))
     (TMP / "reflectors.csv").write_text("x_m,y_m,z_m,range_m,azimuth_deg\n" + "".join(
         f"{10 + 3 * i},8,0.6,{10 + 3 * i},{10 - 0.1 * i}\n" for i in range(12)))
+    (TMP / "one_object.csv").write_text("k,range,azimuth_rad,radial_speed\n" + "".join(
+        f"{k},{50 - 0.5 * k},0.01,-10\n" for k in range(200)))
     (TMP / "record.txt").write_text("")
     os.mkfifo(TMP / "pipe")
     (TMP / "live").mkdir()
@@ -211,6 +221,15 @@ def check_findings():
     expect(f"calibrate plate --table {TMP}/bowl.csv", 1, "the run failed")
     expect(f"calibrate reflectors --table REFLECTORS --vehicle demo --radar 3", 1)
     expect("report LIVE --vehicle demo --out page.html", 1)
+    expect("track --measurements ONE_OBJECT --tracker fast_srukf --out filtered.csv --figure filtered.svg", 0,
+           "fast_srukf: 199 estimates", "no true states")
+    (TMP / "wrong.csv").write_text("k,range,azimuth_rad,radial_speed\n0,50,0,1\n1,50,left,1\n")
+    expect(f"track --measurements {TMP}/wrong.csv --tracker ekf --out wrong_out.csv", 3,
+           "wrong.csv:3: azimuth_rad: read \"left\", allowed is a number")
+    (TMP / "narrow.csv").write_text("k,range,azimuth_rad\n0,50,0\n")
+    expect(f"track --measurements {TMP}/narrow.csv --tracker ekf --out wrong_out.csv", 3,
+           "narrow.csv:1: the header lacks the column radial_speed")
+    check("a wrong table writes no estimates", not (TMP / "wrong_out.csv").exists())
     expect("diagnostics --seconds 0.2", 1, "nothing was received")
     expect("demo --config /absent --config /also_absent", 2, "configuration: /also_absent")
 

@@ -25,8 +25,13 @@ class FastSquareRootUnscented {
   /// used then. So does each update.
   template <typename Motion>
   [[nodiscard]] bool predict(const Motion& motion) {
-    if constexpr (Form == FastForm::kCovariance) return predict_root_by_cholesky(state_, motion);
-    return predict_root_by_qr(state_, motion);
+    if constexpr (Form == FastForm::kPublished) {
+      return predict_root_by_qr(state_, motion);
+    } else if constexpr (Form == FastForm::kCovariance) {
+      return predict_root_by_cholesky(state_, motion);
+    } else {
+      return predict_root_by_axes(state_, motion);
+    }
   }
 
   template <int M>

@@ -11,7 +11,7 @@ namespace boresight::tracking::filters {
 
 /// Into −π … π, for angles from −3π to 3π.
 template <typename Real>
-[[nodiscard]] Real wrapped(Real angle_rad) {
+[[nodiscard]] inline Real wrapped(Real angle_rad) {
   if (angle_rad > std::numbers::pi_v<Real>) return angle_rad - Real(2) * std::numbers::pi_v<Real>;
   if (angle_rad < -std::numbers::pi_v<Real>) return angle_rad + Real(2) * std::numbers::pi_v<Real>;
   return angle_rad;
@@ -66,7 +66,10 @@ struct PolarMeasurement {
   /// Of a measured value, whose azimuth is seen from the sensor's axes and may be of any turn, from an expected one.
   [[nodiscard]] Value innovation(const Value& measured, const Value& expected) const {
     Value d = measured - expected;
-    d(1) = std::remainder(d(1) + sensor_yaw_rad, Real(2) * std::numbers::pi_v<Real>);
+    d(1) += sensor_yaw_rad;
+    // The remainder is slow, and few radars measure more than one turn.
+    const bool is_near = std::abs(d(1)) < Real(3) * std::numbers::pi_v<Real>;
+    d(1) = is_near ? wrapped(d(1)) : std::remainder(d(1), Real(2) * std::numbers::pi_v<Real>);
     return d;
   }
 };

@@ -33,12 +33,10 @@ template <typename Real, int N>
   return true;
 }
 
-/// Lower-triangular `root` with `root` · `root`ᵀ = `rows`ᵀ · `rows`: the triangular factor of the QR decomposition,
-/// transposed, with a diagonal that is not negative. Overwrites `rows`.
-template <typename Real, int Rows, int N>
-void qr_root(Matrix<Real, Rows, N>& rows, Matrix<Real, N, N>& root) {
-  static_assert(Rows >= N);
-  for (int k = 0; k < N; ++k) {
+/// Householder reflections that leave zeros below the diagonal in the first `Reflected` columns.
+template <int Reflected, typename Real, int Rows, int Columns>
+void reflect_columns(Matrix<Real, Rows, Columns>& rows) {
+  for (int k = 0; k < Reflected; ++k) {
     Real square = Real(0);
     for (int i = k; i < Rows; ++i) square += rows(i, k) * rows(i, k);
     const Real diagonal = rows(k, k) > Real(0) ? -std::sqrt(square) : std::sqrt(square);
@@ -47,17 +45,27 @@ void qr_root(Matrix<Real, Rows, N>& rows, Matrix<Real, N, N>& root) {
     if (reflector_square > Real(0)) {
       const Real scale = Real(2) / reflector_square;
       rows(k, k) = first;
-      for (int j = k + 1; j < N; ++j) {
+      for (int j = k + 1; j < Columns; ++j) {
         Real along = Real(0);
         for (int i = k; i < Rows; ++i) along += rows(i, k) * rows(i, j);
         along *= scale;
         for (int i = k; i < Rows; ++i) rows(i, j) -= along * rows(i, k);
       }
     }
-    const Real sign = diagonal < Real(0) ? Real(-1) : Real(1);
-    root(k, k) = sign * diagonal;
+    rows(k, k) = diagonal;
+  }
+}
+
+/// Lower-triangular `root` with `root` · `root`ᵀ = `rows`ᵀ · `rows`: the triangular factor of the QR decomposition,
+/// transposed, with a diagonal that is not negative. Overwrites `rows`.
+template <typename Real, int Rows, int N>
+void qr_root(Matrix<Real, Rows, N>& rows, Matrix<Real, N, N>& root) {
+  static_assert(Rows >= N);
+  reflect_columns<N>(rows);
+  for (int k = 0; k < N; ++k) {
+    const Real sign = rows(k, k) < Real(0) ? Real(-1) : Real(1);
     for (int j = 0; j < k; ++j) root(j, k) = Real(0);
-    for (int j = k + 1; j < N; ++j) root(j, k) = sign * rows(k, j);
+    for (int j = k; j < N; ++j) root(j, k) = sign * rows(k, j);
   }
 }
 
@@ -69,7 +77,7 @@ template <typename Real, int N>
   vector *= std::sqrt(std::abs(weight));
   for (int k = 0; k < N; ++k) {
     const Real square = root(k, k) * root(k, k) + sign * vector(k) * vector(k);
-    if (!(square > Real(0)) || !std::isfinite(square)) return false;
+    if (!(square > Real(0))) return false;
     const Real length = std::sqrt(square), inverse = Real(1) / root(k, k);
     const Real cosine = length * inverse, sine = vector(k) * inverse, inverse_cosine = root(k, k) / length;
     root(k, k) = length;
@@ -78,7 +86,7 @@ template <typename Real, int N>
       vector(i) = cosine * vector(i) - sine * root(i, k);
     }
   }
-  return true;
+  return root.diagonal().allFinite();
 }
 
 }  // namespace boresight::tracking::filters

@@ -3,6 +3,9 @@
 // 8 points and one straight term replace 13 points, with the same result. Equations: docs/algorithms/tracking.md (T30).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "services/tracker/core/filters/flat_arctangent.hpp"
 #include "services/tracker/core/filters/gain.hpp"
 #include "services/tracker/core/filters/noise.hpp"
@@ -14,9 +17,10 @@ namespace boresight::tracking::filters {
 /// How the root of the innovation's covariance is made.
 enum class InnovationRoot { kByQr, kByCholesky };
 
-/// Deviations of the measurement at the moving points from the one at the mean.
+/// The measurement at the mean, and its deviations at the moving points.
 template <typename Real, int M>
 struct MovingPoints {
+  Vector<Real, M> centre;
   Matrix<Real, 8, M> deviations;  ///< rows 0 … 3: forward along columns 0 … 3, rows 4 … 7: back
   Real velocity_term = Real(0);   ///< range rate along column 4; the way back is its negative
   Vector<Real, M> offset;         ///< mean of all points
@@ -24,9 +28,10 @@ struct MovingPoints {
 
 template <typename Real, int M>
 [[nodiscard]] MovingPoints<Real, M> moving_points(const RootGaussian<Real, 6>& state, const SigmaPoints<Real, 6>& sigma,
-                                                  const PolarMeasurement<Real, M>& measurement, Real range_m) {
+                                                  const PolarMeasurement<Real, M>& measurement) {
   const Real x = state.mean(0) - measurement.sensor_m.x(), y = state.mean(3) - measurement.sensor_m.y();
-  const Real v_x = state.mean(1), v_y = state.mean(4), inverse_range = Real(1) / range_m;
+  const Real v_x = state.mean(1), v_y = state.mean(4);
+  const Real range_m = std::sqrt(x * x + y * y), inverse_range = Real(1) / range_m;
   Vector<Real, 8> point_x, point_y, point_v_x, point_v_y;
   for (int j = 0; j < 4; ++j) {
     const Real dx = sigma.spread * state.root(0, j), dy = sigma.spread * state.root(3, j);
@@ -42,6 +47,9 @@ template <typename Real, int M>
   }
   MovingPoints<Real, M> points;
   const Real range_rate = (x * v_x + y * v_y) * inverse_range;
+  points.centre(0) = range_m;
+  points.centre(1) = flat_arctangent(y, x);
+  if constexpr (M == 3) points.centre(2) = range_rate;
   for (int i = 0; i < 8; ++i) {
     const Real range = std::sqrt(point_x(i) * point_x(i) + point_y(i) * point_y(i));
     points.deviations(i, 0) = range - range_m;
@@ -79,19 +87,22 @@ template <typename Real, int M>
 template <typename Real, int M>
 [[nodiscard]] bool innovation_root_by_qr(const MovingPoints<Real, M>& points, const SigmaPoints<Real, 6>& sigma,
                                          const Noise<Real, M>& noise, Matrix<Real, M, M>& root) {
-  // Rows: 8 points, both of column 4, both of column 5 as one, and the noise.
-  Matrix<Real, 11 + M, M> rows;
-  const Real factor = std::sqrt(sigma.weight), factor_of_two = std::sqrt(Real(2) * sigma.weight);
+  // The outer points of columns 4 and 5 and the middle one deviate by −d, but for ±l in the range rate: together
+  // (4 w + w_0) d dᵀ, and 2 w l² beside the noise of the range rate. Rows: 8 points, d, and the noise.
+  const Real offset_weight = Real(4) * sigma.weight + sigma.centre_weight;
+  const Real factor = std::sqrt(sigma.weight), offset_factor = std::sqrt(std::max(offset_weight, Real(0)));
+  Matrix<Real, 9 + M, M> rows;
   for (int k = 0; k < M; ++k) {
-    const Real straight = k == 2 ? points.velocity_term : Real(0);
     for (int i = 0; i < 8; ++i) rows(i, k) = factor * (points.deviations(i, k) - points.offset(k));
-    rows(8, k) = factor * (straight - points.offset(k));
-    rows(9, k) = factor * (-straight - points.offset(k));
-    rows(10, k) = -factor_of_two * points.offset(k);
-    for (int j = 0; j < M; ++j) rows(11 + j, k) = noise.root(k, j);
+    rows(8, k) = offset_factor * points.offset(k);
+    for (int j = 0; j < M; ++j) rows(9 + j, k) = noise.root(k, j);
+  }
+  if constexpr (M == 3) {
+    const Real straight = factor * points.velocity_term;
+    rows(11, 2) = std::sqrt(rows(11, 2) * rows(11, 2) + Real(2) * straight * straight);
   }
   qr_root(rows, root);
-  return rank_one_update<Real, M>(root, -points.offset, sigma.centre_weight);
+  return offset_weight >= Real(0) || rank_one_update<Real, M>(root, points.offset, offset_weight);
 }
 
 /// False if a root is not that of a positive definite covariance, or a value is not finite; `state` must not be used
@@ -100,8 +111,7 @@ template <InnovationRoot How, typename Real, int M>
 [[nodiscard]] bool update_root_by_moving_points(RootGaussian<Real, 6>& state, const SigmaPoints<Real, 6>& sigma,
                                                 const PolarMeasurement<Real, M>& measurement,
                                                 const Vector<Real, M>& value, const Noise<Real, M>& noise) {
-  const Vector<Real, M> centre = measurement.expected(state.mean);
-  const MovingPoints<Real, M> points = moving_points(state, sigma, measurement, centre(0));
+  const MovingPoints<Real, M> points = moving_points(state, sigma, measurement);
   const Real factor = sigma.weight * sigma.spread;
   Matrix<Real, 6, M> cross;
   for (int k = 0; k < M; ++k) {
@@ -120,7 +130,7 @@ template <InnovationRoot How, typename Real, int M>
   const bool has_root = How == InnovationRoot::kByCholesky ? innovation_root_by_cholesky(points, sigma, noise, root)
                                                            : innovation_root_by_qr(points, sigma, noise, root);
   if (!has_root) return false;
-  Vector<Real, M> innovation = measurement.innovation(value, centre) - points.offset;
+  Vector<Real, M> innovation = measurement.innovation(value, points.centre) - points.offset;
   innovation(1) = wrapped(innovation(1));
   return apply_gain<Real, 6, M>(state, root, cross, innovation);
 }
