@@ -7,6 +7,7 @@
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
+#include "services/tracker/core/surroundings/parameters.hpp"
 
 namespace boresight::tracking {
 
@@ -18,6 +19,7 @@ struct Config {
   pmbm::Capacity capacity;
   phd::Parameters phd;
   ReportParameters report;
+  SurroundingsParameters surroundings;
 };
 
 }  // namespace boresight::tracking
