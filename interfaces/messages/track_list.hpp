@@ -77,11 +77,71 @@ static_assert(offsetof(Track, covariance) == 92);
 
 inline constexpr std::size_t kMaxTracks = 128;
 
+enum class RoadSide : std::uint8_t { kLeft = 0, kRight = 1 };
+
+/// Coefficients of a road edge: c0 in m, c1 in 1, c2 in 1/m.
+inline constexpr std::size_t kRoadEdgeStateSize = 3;
+
+/// An edge of the road: the line along which stationary detections concentrate beside the vehicle's path (rail, kerb,
+/// wall, facade, row of parked cars). y(x) = c0 + c1 x + c2 x²/2 in the vehicle frame at the list's measurement time.
+struct RoadEdge {
+  std::uint32_t edge_id;  ///< never reused while the tracker runs; 0 is no edge
+  RoadSide side;
+  TrackUpdate update;  ///< whether detections of this scan lie on it
+  std::array<std::uint8_t, 2> reserved;
+  float age_s;
+  float time_since_update_s;
+  float existence_probability;  ///< 0…1
+  float start_x_m;              ///< the part that was detected lately; beyond it the line is extrapolated
+  float end_x_m;
+  float scatter_std_m;  ///< of its detections across the line, without the radars' noise
+  std::array<float, kRoadEdgeStateSize> coefficients;
+  std::array<float, kRoadEdgeStateSize * kRoadEdgeStateSize> covariance;  ///< row-major, of the coefficients
+  std::uint32_t number_of_detections;                                     ///< on the line in this scan
+};
+static_assert(sizeof(RoadEdge) == 84);
+
+/// Two for each side.
+inline constexpr std::size_t kMaxRoadEdges = 4;
+
+enum class PathObjectKind : std::uint8_t {
+  kStationaryObstacle = 0,  ///< stationary detections; `object_id` counts obstacles
+  kTrack = 1,               ///< an object of `tracks`; `object_id` is its tracking_id
+};
+
+/// Something that the vehicle may drive into. The vehicle's path is the circle of its speed and yaw rate, uncertain by
+/// both and by what the driver does until then. The vehicle's outline is configured.
+struct PathObject {
+  std::uint32_t object_id;  ///< 0 is no object
+  PathObjectKind kind;
+  TrackUpdate update;
+  std::uint8_t warning;  ///< 1: a collision threatens; 0: not
+  std::uint8_t reserved;
+  float age_s;
+  float existence_probability;  ///< 0…1
+  /// 0…1: that the vehicle's outline meets the object, if neither driver acts; with the object's existence.
+  float collision_probability;
+  float
+      time_to_collision_s;  ///< from the outline's front to the object's nearest face; +infinity: they do not approach
+  float time_to_collision_std_s;
+  float required_deceleration_mps2;  ///< constant one with which the vehicle would just not reach the object
+  float path_offset_m;               ///< of the object's centre from the vehicle's path at that time, + left
+  float path_offset_std_m;
+  float length_m;  ///< extents along and across the vehicle's path
+  float width_m;
+  std::array<float, 2> position_vehicle_m;        ///< of its centre now
+  std::array<float, 2> velocity_over_ground_mps;  ///< in vehicle axes
+  std::array<float, 3> position_covariance_m2;    ///< xx, xy, yy
+};
+static_assert(sizeof(PathObject) == 76);
+
+inline constexpr std::size_t kMaxPathObjects = 16;
+
 /// All tracks after the scan `header.source_id` / `header.source_sequence`; entries 0…number_of_tracks−1 are valid,
 /// confirmed ones first. Every track above the tracker's reporting limit is in the list with its existence, tentative
 /// ones too. From which existence on a track counts is the reader's choice; `status` is the default choice.
 struct TrackList {
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
 
   MessageHeader header;
   std::uint32_t number_of_tracks;
@@ -91,10 +151,19 @@ struct TrackList {
   std::uint32_t tracker_flags;           ///< tracker_flag bits
   std::uint32_t likelihood_evaluations;  ///< work of the step; the same input gives the same number
   alignas(64) std::array<Track, kMaxTracks> tracks;
+  std::uint32_t number_of_road_edges;    ///< valid entries of `road_edges`: nearest to the path first
+  std::uint32_t number_of_path_objects;  ///< valid entries of `path_objects`: warnings first, then the likeliest
+  std::uint32_t number_of_collision_warnings;
+  std::uint32_t dropped_path_objects;  ///< beyond kMaxPathObjects
+  std::array<RoadEdge, kMaxRoadEdges> road_edges;
+  std::array<PathObject, kMaxPathObjects> path_objects;
 };
 
 static_assert(kIsPlainMessage<TrackList>);
 static_assert(offsetof(TrackList, tracks) == 128);
-static_assert(sizeof(TrackList) == 128 + kMaxTracks * sizeof(Track));
+static_assert(offsetof(TrackList, number_of_road_edges) == 128 + kMaxTracks * sizeof(Track));
+static_assert(offsetof(TrackList, path_objects) ==
+              128 + kMaxTracks * sizeof(Track) + 16 + kMaxRoadEdges * sizeof(RoadEdge));
+static_assert(sizeof(TrackList) % 64 == 0);
 
 }  // namespace boresight

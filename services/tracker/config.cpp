@@ -253,6 +253,83 @@ void read_capacity(config::Reader table, pmbm::Capacity& c) {
   if (c.group_measurements > c.measurements) table.reject("group_measurements", "must not exceed measurements");
 }
 
+void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
+  StationaryParameters& s = p.stationary;
+  read(root.table("surroundings"), {{"memory_s", &s.memory_s, {0.05, 5.0}},
+                                    {"least_probability", &s.least_probability, {0.0, 1.0}},
+                                    {"behind_m", &s.behind_m, {0.0, 50.0}},
+                                    {"ahead_m", &s.ahead_m, {10.0, 150.0}},
+                                    {"aside_m", &s.aside_m, {2.0, 50.0}},
+                                    {"lowest_m", &s.lowest_m, {-5.0, 5.0}},
+                                    {"highest_m", &s.highest_m, {0.5, 10.0}},
+                                    {"mounting_std_rad", &s.mounting_std_rad, {0.0, 0.1}}});
+  RoadEdgeParameters& e = p.road_edge;
+  read(root.table("road_edge"), {{"ahead_m", &e.ahead_m, {10.0, 150.0}},
+                                 {"band_half_width_m", &e.band_half_width_m, {0.05, 2.0}},
+                                 {"cell_m", &e.cell_m, {2.0, 10.0}},
+                                 {"contrast_probability", &e.contrast_probability, {0.34, 0.999}},
+                                 {"cell_memory_s", &e.cell_memory_s, {0.05, 20.0}},
+                                 {"least_cell_detections", &e.least_cell_detections, {1.0, 1000.0}},
+                                 {"prior_log_odds", &e.prior_log_odds, {-50.0, 0.0}},
+                                 {"start_log_odds", &e.start_log_odds, {-10.0, 50.0}},
+                                 {"end_log_odds", &e.end_log_odds, {-50.0, 50.0}},
+                                 {"slope_step", &e.slope_step, {0.001, 0.2}},
+                                 {"curvature_step_per_m", &e.curvature_step_per_m, {1e-05, 0.05}},
+                                 {"least_distance_m", &e.least_distance_m, {0.1, 10.0}},
+                                 {"separation_m", &e.separation_m, {0.1, 10.0}},
+                                 {"longest_gap_m", &e.longest_gap_m, {0.0, 50.0}},
+                                 {"longest_coast_s", &e.longest_coast_s, {0.05, 20.0}},
+                                 {"scatter_m", &e.scatter_m, {0.001, 1.0}},
+                                 {"scatter_memory_s", &e.scatter_memory_s, {0.05, 100.0}},
+                                 {"repeat_factor", &e.repeat_factor, {1.0, 1000.0}},
+                                 {"offset_density_m2pm", &e.offset_density_m2pm, {0.0, 1.0}},
+                                 {"slope_density_pm", &e.slope_density_pm, {0.0, 0.01}},
+                                 {"curvature_density_pm3", &e.curvature_density_pm3, {0.0, 0.001}},
+                                 {"curvature_rate_std_pm2", &e.curvature_rate_std_pm2, {0.0, 0.01}},
+                                 {"report_existence", &e.report_existence, {0.0, 1.0}},
+                                 {"course_existence", &e.course_existence, {0.0, 1.0}},
+                                 {"course_beyond_m", &e.course_beyond_m, {0.0, 100.0}}});
+  ObstacleParameters& o = p.obstacle;
+  read(root.table("path_obstacle"), {{"corridor_m", &o.corridor_m, {0.5, 10.0}},
+                                     {"cluster_radius_m", &o.cluster_radius_m, {0.1, 10.0}},
+                                     {"least_detections", &o.least_detections, {1.0, 500.0}},
+                                     {"gate_m", &o.gate_m, {0.1, 10.0}},
+                                     {"count", &o.count, {0.01, 100.0}},
+                                     {"count_range_m", &o.count_range_m, {1.0, 300.0}},
+                                     {"count_power", &o.count_power, {0.0, 4.0}},
+                                     {"background_count", &o.background_count, {0.001, 10.0}},
+                                     {"background_factor", &o.background_factor, {0.0, 100.0}},
+                                     {"background_memory_s", &o.background_memory_s, {0.1, 100.0}},
+                                     {"excess_db", &o.excess_db, {0.0, 60.0}},
+                                     {"excess_std_db", &o.excess_std_db, {1.0, 60.0}},
+                                     {"level_memory_s", &o.level_memory_s, {0.1, 1000.0}},
+                                     {"level_range_m", &o.level_range_m, {5.0, 100.0}},
+                                     {"evidence_share", &o.evidence_share, {0.001, 1.0}},
+                                     {"prior_log_odds", &o.prior_log_odds, {-50.0, 0.0}},
+                                     {"most_log_odds", &o.most_log_odds, {0.0, 50.0}},
+                                     {"end_log_odds", &o.end_log_odds, {-50.0, 50.0}},
+                                     {"position_density_m2ps", &o.position_density_m2ps, {0.0, 10.0}},
+                                     {"centre_std_m", &o.centre_std_m, {0.01, 5.0}},
+                                     {"extent_memory_s", &o.extent_memory_s, {0.05, 20.0}},
+                                     {"life_s", &o.life_s, {0.05, 20.0}}});
+  CollisionParameters& c = p.collision;
+  read(root.table("collision"), {{"front_m", &c.front_m, {0.1, 20.0}},
+                                 {"width_m", &c.width_m, {0.5, 4.0}},
+                                 {"lateral_jerk_density_m2ps5", &c.lateral_jerk_density_m2ps5, {0.0, 100.0}},
+                                 {"road_share", &c.road_share, {0.0, 1.0}},
+                                 {"lane_std_m", &c.lane_std_m, {0.001, 5.0}},
+                                 {"least_speed_mps", &c.least_speed_mps, {0.1, 20.0}},
+                                 {"horizon_s", &c.horizon_s, {0.5, 20.0}},
+                                 {"warning_time_s", &c.warning_time_s, {0.1, 20.0}},
+                                 {"warning_probability", &c.warning_probability, {0.01, 0.999}},
+                                 {"oncoming_probability", &c.oncoming_probability, {0.01, 1.0}},
+                                 {"oncoming_speed_mps", &c.oncoming_speed_mps, {0.0, 50.0}},
+                                 {"warning_deceleration_mps2", &c.warning_deceleration_mps2, {0.0, 20.0}},
+                                 {"hold_s", &c.hold_s, {0.0, 5.0}},
+                                 {"least_existence", &c.least_existence, {0.0, 1.0}},
+                                 {"report_probability", &c.report_probability, {0.0, 1.0}}});
+}
+
 }  // namespace
 
 Config read_config(config::Reader root) {
@@ -297,6 +374,7 @@ Config read_config(config::Reader root) {
   if (r.confirmed_existence <= r.least_existence) {
     report.reject("confirmed_existence", "must be greater than least_existence");
   }
+  read_surroundings(root, c.surroundings);
   root.finish();
   return c;
 }

@@ -8,6 +8,7 @@
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
+#include "services/tracker/core/surroundings/parameters.hpp"
 
 namespace boresight::tracking {
 
@@ -20,6 +21,7 @@ struct Config {
   phd::Parameters phd;
   classical::Parameters classical;
   ReportParameters report;
+  SurroundingsParameters surroundings;
 };
 
 }  // namespace boresight::tracking

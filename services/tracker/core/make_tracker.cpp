@@ -11,6 +11,7 @@
 #include "services/tracker/core/phd/phd_filter.hpp"
 #include "services/tracker/core/pmbm/pmbm_filter.hpp"
 #include "services/tracker/core/point_process_tracker.hpp"
+#include "services/tracker/core/surroundings/surroundings_tracker.hpp"
 
 namespace boresight::tracking {
 
@@ -37,7 +38,10 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
   auto filter = make_filter(name, config);
   auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
   auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);
-  return std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
+  auto tracker = std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
+  // Whatever tracks the moving objects: what stands around the vehicle does not depend on it.
+  Surroundings surroundings(vehicle, config.surroundings, config.model.latest_scan_s, config.model.longest_gap_s);
+  return std::make_unique<SurroundingsTracker>(std::move(tracker), std::move(surroundings));
 }
 
 std::unique_ptr<MultiObjectTracker> make_scenario_tracker(std::string_view name, const LinearScenario& scenario) {

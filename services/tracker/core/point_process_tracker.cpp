@@ -36,6 +36,8 @@ StepResult PointProcessTracker::step(const ClassifiedScan& scan) {
 
 void PointProcessTracker::write(TrackList& out) const {
   out.number_of_tracks = out.number_of_confirmed_tracks = out.dropped_tracks = 0;
+  out.number_of_road_edges = out.number_of_path_objects = 0;
+  out.number_of_collision_warnings = out.dropped_path_objects = 0;
   out.flags = flags_;
   out.likelihood_evaluations = result_.likelihood_evaluations;
   out.tracker_flags = 0;
