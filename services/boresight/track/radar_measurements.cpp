@@ -14,8 +14,8 @@ namespace boresight::track {
 namespace {
 
 constexpr std::array<std::string_view, 6> kTruthColumns = {"tx", "tvx", "tax", "ty", "tvy", "tay"};
-constexpr std::int64_t kLastStep = 1'000'000'000;
-constexpr double kFarthest_m = 1e6, kFastest_mps = 1e4, kLargest_mps2 = 1e4;
+constexpr std::int64_t kMaxStep = 1'000'000'000;
+constexpr double kMaxDistance_m = 1e6, kMaxSpeed_mps = 1e4, kMaxAcceleration_mps2 = 1e4;
 
 bool has_truth(const score::Table& table) {
   const auto is_there = [&](std::string_view column) { return table.has(column); };
@@ -27,7 +27,7 @@ bool has_truth(const score::Table& table) {
 }
 
 ObjectState truth_of(const score::Table& table) {
-  constexpr std::array kLimits = {kFarthest_m, kFastest_mps, kLargest_mps2};
+  constexpr std::array kLimits = {kMaxDistance_m, kMaxSpeed_mps, kMaxAcceleration_mps2};
   ObjectState state;
   for (std::size_t i = 0; i < kTruthColumns.size(); ++i) {
     const double limit = kLimits[i % kLimits.size()];
@@ -44,13 +44,13 @@ RadarMeasurements read_radar_measurements(const std::filesystem::path& file) {
   RadarMeasurements measurements;
   while (table.next()) {
     RadarMeasurement row;
-    row.step = table.integer("k", 0, kLastStep);
+    row.step = table.integer("k", 0, kMaxStep);
     if (!measurements.rows.empty() && row.step <= measurements.rows.back().step) {
       table.refuse("k", fmt::format("more than {}, the step of the row before", measurements.rows.back().step));
     }
-    row.range_m = table.number("range", std::numeric_limits<double>::min(), kFarthest_m);
+    row.range_m = table.number("range", std::numeric_limits<double>::min(), kMaxDistance_m);
     row.azimuth_rad = table.number("azimuth_rad", -std::numbers::pi, std::numbers::pi);
-    row.range_rate_mps = table.number("radial_speed", -kFastest_mps, kFastest_mps);
+    row.range_rate_mps = table.number("radial_speed", -kMaxSpeed_mps, kMaxSpeed_mps);
     measurements.rows.push_back(row);
     if (is_truth_known) measurements.truth.push_back(truth_of(table));
   }

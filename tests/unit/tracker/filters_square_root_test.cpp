@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "services/tracker/core/filters/flat_arctangent.hpp"
+#include "tests/unit/tracker/filters_support.hpp"
 #include "services/tracker/core/filters/square_root.hpp"
 
 namespace boresight::tracking::filters {
 namespace {
 
-using Matrix6 = Matrix<double, 6, 6>;
-using Vector6 = Vector<double, 6>;
+using testing::Matrix6;
+using testing::Vector6;
 
 Matrix6 random_covariance(unsigned seed) {
   std::srand(seed);

@@ -6,7 +6,7 @@ namespace boresight::bench::filters {
 namespace {
 
 TEST(FilterScenes, AreDrawnAlikeFromTheSameSeed) {
-  const Run a = draw_run(scenes()[0], 5), b = draw_run(scenes()[0], 5), c = draw_run(scenes()[0], 6);
+  const auto a = draw_run(scenes()[0], 5), b = draw_run(scenes()[0], 5), c = draw_run(scenes()[0], 6);
   ASSERT_EQ(a.measured.size(), kSteps);
   EXPECT_EQ(a.measured.back(), b.measured.back());
   EXPECT_NE(a.measured.back(), c.measured.back());
@@ -33,7 +33,7 @@ TEST(FilterErrors, OfAzimuthsAcrossTheSeamAreSmall) {
 }
 
 TEST(FilterErrors, AreThoseOfAllForms) {
-  const Run run = draw_run(scenes()[0], 3);
+  const auto run = draw_run(scenes()[0], 3);
   const Model<double> the_model = model<double>();
   std::size_t forms = 0;
   for_each_form<double>([&]<typename Filter>(std::size_t form, const Filter&) {
