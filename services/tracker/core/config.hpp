@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "services/tracker/core/classes/object_forest.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
@@ -18,6 +19,7 @@ struct Config {
   pmbm::Capacity capacity;
   phd::Parameters phd;
   ReportParameters report;
+  ObjectForest forest;  ///< classes of tracks by their features; without trees: the prior
 };
 
 }  // namespace boresight::tracking
