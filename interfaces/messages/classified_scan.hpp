@@ -49,7 +49,7 @@ inline constexpr std::size_t kMaxReflectorSegments = 64;
 /// Detections of one radar cycle, classified; same order as in the CorrectedScan. Detections that the corrector
 /// rejected (`corrected_flag::kRejected`) have `kUnknown` provenance.
 struct ClassifiedScan {
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
   /// Log-likelihood ratio of a certain origin: beyond what any evidence reaches.
   static constexpr float kCertain = 20.0F;
 
@@ -68,6 +68,7 @@ struct ClassifiedScan {
   DetectionColumn<float> azimuth_vehicle_rad;
   DetectionColumn<float> range_rate_over_ground_mps;
   DetectionColumn<float> rcs_dbsm;
+  DetectionColumn<float> snr_db;
   DetectionColumn<float> range_std_m;
   DetectionColumn<float> azimuth_std_rad;
   DetectionColumn<float> range_rate_std_mps;
@@ -111,8 +112,8 @@ struct ClassifiedScan {
 static_assert(kIsPlainMessage<ClassifiedScan>);
 static_assert(alignof(ClassifiedScan) == 64);
 static_assert(offsetof(ClassifiedScan, x_vehicle_m) == 256);
-static_assert(offsetof(ClassifiedScan, origin_probability) == 256 + 10 * 4096);
+static_assert(offsetof(ClassifiedScan, origin_probability) == 256 + 11 * 4096);
 static_assert(sizeof(ClassifiedScan) ==
-              256 + (11 + kNumberOfOrigins) * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
+              256 + (12 + kNumberOfOrigins) * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
 
 }  // namespace boresight

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   boresight::add_demo_command(app, exit_code);
   boresight::add_diagnostics_command(app, exit_code);
   boresight::add_dtc_command(app, exit_code);
+  boresight::add_fit_classes_command(app, exit_code);
   boresight::add_fit_evidence_command(app, exit_code);
   boresight::add_gospa_command(app, exit_code);
   boresight::add_monitor_command(app, exit_code);

@@ -4,7 +4,11 @@
 #include <array>
 #include <functional>
 
+#include <fmt/format.h>
+
 #include "services/common/runtime/config/object_classes_file.hpp"
+#include "services/common/runtime/config/read_text.hpp"
+#include "services/tracker/core/classes/forest_text.hpp"
 #include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::tracking {
@@ -379,9 +383,22 @@ Config read_config(config::Reader root) {
   return c;
 }
 
+std::filesystem::path forest_file(const runtime::Configuration& files) {
+  return files.directory / "services" / "object_forest.csv";
+}
+
+ObjectForest read_forest(const std::filesystem::path& file) {
+  try {
+    return parse_forest(config::read_text(file));
+  } catch (const ForestTextError& error) {
+    throw config::Error(fmt::format("{}:{}: {}", file.string(), error.line, error.what()));
+  }
+}
+
 Config read_config(const runtime::Configuration& files) {
   Config c = read_config(config::Reader::open(files.service_file("tracker")));
   c.model.classes = config::read_object_classes(config::Reader::open(files.service_file("object_classes")));
+  c.forest = read_forest(forest_file(files));
   return c;
 }
 

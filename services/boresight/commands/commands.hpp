@@ -14,6 +14,7 @@ void add_decode_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
 void add_diagnostics_command(CLI::App& app, int& exit_code);
 void add_dtc_command(CLI::App& app, int& exit_code);
+void add_fit_classes_command(CLI::App& app, int& exit_code);
 void add_fit_evidence_command(CLI::App& app, int& exit_code);
 void add_gospa_command(CLI::App& app, int& exit_code);
 void add_monitor_command(CLI::App& app, int& exit_code);

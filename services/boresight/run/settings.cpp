@@ -1,5 +1,7 @@
 #include "services/boresight/run/settings.hpp"
 
+#include <iterator>
+
 #include "services/alignment_estimator/config.hpp"
 #include "services/detection_corrector/config.hpp"
 #include "services/ghost_filter/config.hpp"
@@ -25,6 +27,8 @@ std::vector<std::pair<std::string, std::string>> settings_files(const runtime::C
                                     "tracker", "object_classes", "health"}) {
     files.emplace_back(service, configuration.service_file(service).string());
   }
+  const auto health = std::prev(files.end());  // the classes stay beside each other
+  files.emplace(health, "object_forest", tracking::forest_file(configuration).string());
   return files;
 }
 

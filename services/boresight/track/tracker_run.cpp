@@ -30,7 +30,8 @@ void fill_scan(const std::vector<MeasuredPoint>& points, std::size_t step, doubl
     scan.azimuth_vehicle_rad[i] = static_cast<float>(std::atan2(point.position_m.y(), point.position_m.x()));
     const bool has_range_rate = std::isfinite(point.range_rate_mps);
     scan.range_rate_over_ground_mps[i] = has_range_rate ? static_cast<float>(point.range_rate_mps) : 0.0F;
-    scan.rcs_dbsm[i] = scan.range_std_m[i] = scan.azimuth_std_rad[i] = scan.range_rate_std_mps[i] = 0.0F;
+    scan.rcs_dbsm[i] = scan.snr_db[i] = 0.0F;
+    scan.range_std_m[i] = scan.azimuth_std_rad[i] = scan.range_rate_std_mps[i] = 0.0F;
     scan.detection_flags[i] = corrected_flag::kMoving;
     scan.set_certain(i, Provenance::kMoving);
     scan.moving_log_likelihood_ratio[i] = 0.0F;  // no evidence for or against: the table says nothing of origins

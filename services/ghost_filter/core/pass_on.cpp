@@ -22,6 +22,7 @@ std::size_t pass_on(const CorrectedScan& scan, ClassifiedScan& out) {
   copy(scan.azimuth_vehicle_rad, out.azimuth_vehicle_rad);
   copy(scan.range_rate_over_ground_mps, out.range_rate_over_ground_mps);
   copy(scan.rcs_dbsm, out.rcs_dbsm);
+  copy(scan.snr_db, out.snr_db);
   copy(scan.range_std_m, out.range_std_m);
   copy(scan.azimuth_std_rad, out.azimuth_std_rad);
   copy(scan.range_rate_std_mps, out.range_rate_std_mps);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "services/tracker/core/classical/parameters.hpp"
+#include "services/tracker/core/classes/object_forest.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
@@ -22,6 +23,7 @@ struct Config {
   classical::Parameters classical;
   ReportParameters report;
   SurroundingsParameters surroundings;
+  ObjectForest forest;  ///< classes of tracks by their features; without trees: the prior
 };
 
 }  // namespace boresight::tracking

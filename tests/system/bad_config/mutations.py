@@ -207,6 +207,10 @@ add_special(VEHICLE, SERVICES)
 for name in (*SERVICES, "replay"):
     add_special(f"services/{name}.toml", (name,))
 add_special("services/object_classes.toml", ("tracker",))
+add_special("services/object_forest.csv", ("tracker",))
+add("services/object_forest.csv", ("tracker",),
+    ("version,1", "version,2", "the version must be 1"), ("number,memory_s", "number,memory", "the number must be memory_s"),
+    ("feature,count_rate", "feature,counts", "the feature must be count_rate"))
 add_special("radar_profiles/ideal.toml", ("ghost_filter",))
 for name in ("example_radar.toml", "example_ego.toml", "example_radar.dbc"):
     add_special(f"mappings/{name}", ("ingest_gateway",), "example_mixed")

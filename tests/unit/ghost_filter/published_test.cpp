@@ -253,6 +253,7 @@ TEST_F(PublishedMethod, CopiesWhatTheTrackerNeeds) {
   scan_->range_std_m[i] = 0.12F;
   scan_->azimuth_std_rad[i] = 0.003F;
   scan_->rcs_dbsm[i] = 7.0F;
+  scan_->snr_db[i] = 23.0F;
   scan_->flags = pipeline_flag::kNoAlignment;
   classify();
   EXPECT_EQ(out_->x_vehicle_m[i], 20.0F);
@@ -260,6 +261,7 @@ TEST_F(PublishedMethod, CopiesWhatTheTrackerNeeds) {
   EXPECT_EQ(out_->range_std_m[i], 0.12F);
   EXPECT_EQ(out_->azimuth_std_rad[i], 0.003F);
   EXPECT_EQ(out_->rcs_dbsm[i], 7.0F);
+  EXPECT_EQ(out_->snr_db[i], 23.0F);
   EXPECT_TRUE(out_->flags & pipeline_flag::kNoAlignment);
   EXPECT_EQ(out_->geometry.sensor_position_vehicle_m[0], 3.6F);
 }

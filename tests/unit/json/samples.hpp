@@ -49,6 +49,7 @@ inline std::vector<std::string> run_summaries() {
                                       {"ghost_filter", "g.toml"},
                                       {"tracker", "t.toml"},
                                       {"object_classes", "o.toml"},
+                                      {"object_forest", "f.csv"},
                                       {"health", "h.toml"}};
   recordings.frames = recording::Counts{};
   recordings.rejected[0] = recordings.noted[0] = recordings.rejected[1] = recordings.noted[1] = {{"wrong length", 3}};

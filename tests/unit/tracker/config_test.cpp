@@ -342,18 +342,26 @@ TEST(TrackerConfig, KeysThatContradictEachOtherAreRefused) {
   EXPECT_NO_THROW(static_cast<void>(parsed("[report]\nconfirmed_existence = 0.06\nleast_existence = 0.05")));
 }
 
-TEST(TrackerConfig, ClassesComeFromTheirOwnFile) {
+TEST(TrackerConfig, ClassesAndTheirForestComeFromTheirOwnFiles) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tracker_config";
   std::filesystem::create_directories(folder / "services");
   std::ofstream(folder / "services/tracker.toml") << "[report]\nstopped_speed_mps = 0.7\n";
   std::ofstream(folder / "services/object_classes.toml") << "[size]\nlength_mean_m = [1, 2, 4, 6, 12]\n";
+  const std::filesystem::path forest = folder / "services/object_forest.csv";
+  std::filesystem::copy_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/services/object_forest.csv", forest,
+                             std::filesystem::copy_options::overwrite_existing);
   runtime::Configuration files;
   files.directory = folder;
   const Config config = read_config(files);
+  EXPECT_FALSE(config.forest.table.trees.empty());
   EXPECT_EQ(config.report.stopped_speed_mps, 0.7);
   EXPECT_EQ(config.model.classes.back().size.length_mean_m, 12.0);
   EXPECT_EQ(config.model.classes.back().size.width_mean_m, Config{}.model.classes.back().size.width_mean_m);
   std::filesystem::remove(folder / "services/object_classes.toml");
+  EXPECT_THROW(static_cast<void>(read_config(files)), config::Error);
+  std::ofstream(folder / "services/object_classes.toml") << "[size]\n";
+  EXPECT_NO_THROW(static_cast<void>(read_config(files)));
+  std::filesystem::remove(forest);
   EXPECT_THROW(static_cast<void>(read_config(files)), config::Error);
   std::filesystem::remove_all(folder);
 }
