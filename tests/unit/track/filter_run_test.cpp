@@ -11,7 +11,6 @@
 #include "services/boresight/score/table.hpp"
 #include "services/boresight/track/filter_errors.hpp"
 #include "services/boresight/track/filter_figure.hpp"
-#include "services/common/runtime/clock.hpp"
 #include "tests/unit/track/files.hpp"
 
 namespace boresight::track {
@@ -64,6 +63,12 @@ TEST_F(RadarTables, ErrorsNameFileLineColumnAndAllowedValues) {
               HasSubstr("the header lacks the column tax; a true state has the columns tx,tvx,tax,ty,tvy,tay"));
 }
 
+/// Two microseconds go by from each reading to the next.
+std::int64_t made_clock() {
+  static std::int64_t time_ns = 0;
+  return time_ns += 2000;
+}
+
 /// An object that passes beside the radar, with the noise of the published test; every seventh step is missing.
 RadarMeasurements crossing() {
   std::mt19937_64 random(3);
@@ -85,11 +90,11 @@ RadarMeasurements crossing() {
 TEST(FilterRuns, OfEachKindImproveTheMeasurements) {
   const RadarMeasurements measurements = crossing();
   for (const std::string_view name : tracking::filters::filter_kind_names()) {
-    const FilterRun run =
-        run_filter(*tracking::filters::filter_kind(name), measurements, {}, 2, runtime::thread_cpu_time_ns);
+    const FilterRun run = run_filter(*tracking::filters::filter_kind(name), measurements, {}, 2, made_clock);
     EXPECT_FALSE(run.refused_row) << name;
     EXPECT_TRUE(run.is_repeatable) << name;
     ASSERT_EQ(run.estimates.size(), measurements.rows.size() - 1) << name;
+    EXPECT_NEAR(run.mean_cpu_us, 2.0 / static_cast<double>(run.estimates.size()), 1e-12) << name;
     const FilterErrors errors = filter_errors(measurements, run, 20);
     EXPECT_EQ(errors.steps, 154U) << name;
     EXPECT_NEAR(errors.measured(0), 1.0, 0.2) << name;
@@ -105,8 +110,7 @@ TEST(FilterRuns, HaveTheGoldenStates) {
   for (const std::string scene : {"approach", "crossing"}) {
     const RadarMeasurements measurements = read_radar_measurements(data / ("golden_" + scene + "_meas.csv"));
     for (const std::string name : {"ekf", "ukf", "srukf"}) {
-      const FilterRun run =
-          run_filter(*tracking::filters::filter_kind(name), measurements, {}, 1, runtime::thread_cpu_time_ns);
+      const FilterRun run = run_filter(*tracking::filters::filter_kind(name), measurements, {}, 1, made_clock);
       score::Table golden(data / ("golden_" + scene + "_" + name + "_a1.csv"), {"k", "x", "vx", "ax", "y", "vy", "ay"});
       for (const auto& estimate : run.estimates) {
         ASSERT_TRUE(golden.next());
@@ -124,8 +128,7 @@ TEST(FilterRuns, EndWhereTheCovarianceIsLost) {
   RadarMeasurements measurements = crossing();
   FilterSetup setup;
   setup.jerk_density_m2ps5 = -1.0;  // refused
-  const FilterRun run =
-      run_filter(FilterKind::kSquareRootUnscented, measurements, setup, 1, runtime::thread_cpu_time_ns);
+  const FilterRun run = run_filter(FilterKind::kSquareRootUnscented, measurements, setup, 1, made_clock);
   EXPECT_EQ(run.refused_row, 1U);
   EXPECT_TRUE(run.estimates.empty());
   EXPECT_THAT(filter_errors_text(filter_errors(measurements, run, 20), 20), HasSubstr("no step after the first 20"));
@@ -133,7 +136,7 @@ TEST(FilterRuns, EndWhereTheCovarianceIsLost) {
 
 TEST(FilterRuns, AreWrittenWithTheirSteps) {
   const RadarMeasurements measurements = crossing();
-  const FilterRun run = run_filter(FilterKind::kUnscented, measurements, {}, 1, runtime::thread_cpu_time_ns);
+  const FilterRun run = run_filter(FilterKind::kUnscented, measurements, {}, 1, made_clock);
   const std::string csv = filter_csv(measurements, run);
   EXPECT_THAT(csv, ::testing::StartsWith("k,x,vx,ax,y,vy,ay,range,azimuth_rad,radial_speed\n11,"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(measurements.rows.size()));
@@ -144,7 +147,7 @@ TEST(FilterRuns, AreWrittenWithTheirSteps) {
 
 TEST(FilterFigures, ShowTheErrorsIfTheTruthIsKnown) {
   RadarMeasurements measurements = crossing();
-  const FilterRun run = run_filter(FilterKind::kUnscented, measurements, {}, 1, runtime::thread_cpu_time_ns);
+  const FilterRun run = run_filter(FilterKind::kUnscented, measurements, {}, 1, made_clock);
   const std::string with_truth = filter_svg("ukf", measurements, run, 0.05);
   EXPECT_THAT(with_truth, HasSubstr("error of the azimuth"));
   measurements.truth.clear();

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "services/tracker/core/filters/flat_arctangent.hpp"
-#include "tests/unit/tracker/filters_support.hpp"
 #include "services/tracker/core/filters/square_root.hpp"
+#include "tests/unit/tracker/filters_support.hpp"
 
 namespace boresight::tracking::filters {
 namespace {
