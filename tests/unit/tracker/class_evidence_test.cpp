@@ -77,8 +77,11 @@ TEST(ClassEvidence, AccumulatesTheSizeThatSingleScansDoNotShow) {
   for (int i = 0; i < 200; ++i) evidence.add(drive.scan(1), {});
   const ClassFeatures f = evidence.features();
   EXPECT_EQ(of(f, ClassFeature::kLength), 0.0);
-  EXPECT_NEAR(of(f, ClassFeature::kReachAlong), 4.0, 0.4);
-  EXPECT_NEAR(of(f, ClassFeature::kReachAcross), 2.0, 0.3);
+  // Extremes fade to what the present scans show, so the reach is less than the body's.
+  EXPECT_GT(of(f, ClassFeature::kReachAlong), 2.5);
+  EXPECT_LE(of(f, ClassFeature::kReachAlong), 4.0);
+  EXPECT_GT(of(f, ClassFeature::kReachAcross), 1.25);
+  EXPECT_LE(of(f, ClassFeature::kReachAcross), 2.0);
 }
 
 TEST(ClassEvidence, SpreadWithinScansIsThatOfTheBody) {
