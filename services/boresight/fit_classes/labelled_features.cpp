@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "services/boresight/fit_classes/track_points.hpp"
 #include "services/simulator/drive.hpp"
+#include "services/tracker/core/classes/track_evidence.hpp"
 
 namespace boresight::fit_classes {
 
@@ -53,42 +53,17 @@ constexpr std::array<std::string_view, extended_object::kRoadUserClasses> kClass
 class Collector {
  public:
   Collector(const simulator::Drive& drive, const VehicleConfig& vehicle, const tracking::ObjectForest& forest)
-      : drive_(drive), vehicle_(vehicle), classifier_(forest, vehicle.radars.size()) {}
+      : drive_(drive), evidence_(vehicle, forest) {}
 
   void add(double t_s, const ClassifiedScan& scan, const TrackList& list) {
-    const RadarConfig* const radar = vehicle_.radar(scan.header.source_id);
-    if (radar == nullptr) return;
-    const auto index = static_cast<std::size_t>(radar - vehicle_.radars.data());
-    const double elapsed_s = has_scan_ ? t_s - last_s_ : 0.0;
-    has_scan_ = true;
-    last_s_ = t_s;
-    yaw_rad_ += static_cast<double>(scan.geometry.ego_yaw_rate_radps) * elapsed_s;
-    classifier_.levels().learn(scan, index);
-    const auto points = points_of_tracks(moving_points(scan, index, classifier_.levels()), list);
-    std::map<std::uint32_t, Known> now;
-    for (std::size_t k = 0; k < list.number_of_tracks; ++k) {
-      const Track& track = list.tracks[k];
-      const auto before = known_.find(track.tracking_id);
-      Known known = before == known_.end() ? Known{} : before->second;
-      tracking::TrackObservation observation = observation_of(track, scan, *radar);
-      observation.points = points[k];
-      observation.elapsed_s = before == known_.end() ? 0.0 : elapsed_s;
-      observation.yaw_rad = yaw_rad_;
-      classifier_.add(known.evidence, observation);
-      now.emplace(track.tracking_id, known);
-    }
-    known_ = std::move(now);
+    evidence_.step(scan, list);
+    std::erase_if(next_row_s_, [this](const auto& known) { return evidence_.find(known.first) == nullptr; });
     note_rows(t_s, list);
   }
 
   [[nodiscard]] std::vector<LabelledFeatures> finish() { return std::move(rows_); }
 
  private:
-  struct Known {
-    tracking::ClassEvidence evidence;
-    double next_row_s = 0.0;
-  };
-
   void note_rows(double t_s, const TrackList& list) {
     const simulator::EgoState ego = drive_.ego(t_s);
     Eigen::Matrix2d to_world;
@@ -113,22 +88,21 @@ class Collector {
         nearest = &track;
       }
       if (nearest == nullptr) continue;
-      Known& known = known_.at(nearest->tracking_id);
+      const tracking::ClassEvidence* const evidence = evidence_.find(nearest->tracking_id);
+      if (evidence == nullptr) continue;
       const auto age_s = static_cast<double>(nearest->age_s);
-      if (age_s < known.next_row_s) continue;
-      known.next_row_s = age_s + kBetweenRows_s;
-      rows_.push_back({nearest->tracking_id, body.id, class_of(body.kind), age_s, known.evidence.detections(),
-                       known.evidence.features()});
+      double& next_row_s = next_row_s_[nearest->tracking_id];
+      if (age_s < next_row_s) continue;
+      next_row_s = age_s + kBetweenRows_s;
+      rows_.push_back(
+          {nearest->tracking_id, body.id, class_of(body.kind), age_s, evidence->detections(), evidence->features()});
     }
   }
 
   const simulator::Drive& drive_;
-  const VehicleConfig& vehicle_;
-  tracking::TrackClassifier classifier_;
-  std::map<std::uint32_t, Known> known_;
+  tracking::TrackEvidence evidence_;
+  std::map<std::uint32_t, double> next_row_s_;  // by track
   std::vector<LabelledFeatures> rows_;
-  double last_s_ = 0.0, yaw_rad_ = 0.0;
-  bool has_scan_ = false;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "services/tracker/core/classes/classifying_tracker.hpp"
 #include "services/tracker/core/classical/classical_filter.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
 #include "services/tracker/core/model/scenario_model.hpp"
@@ -38,7 +39,12 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
   auto filter = make_filter(name, config);
   auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
   auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);
-  auto tracker = std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
+  std::unique_ptr<MultiObjectTracker> tracker =
+      std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
+  // The chain's own classes; those of the other trackers are a part of their measurement model.
+  if (name == "classical" && !config.forest.table.trees.empty()) {
+    tracker = std::make_unique<ClassifyingTracker>(std::move(tracker), TrackEvidence(vehicle, config.forest));
+  }
   // Whatever tracks the moving objects: what stands around the vehicle does not depend on it.
   Surroundings surroundings(vehicle, config.surroundings, config.model.latest_scan_s, config.model.longest_gap_s);
   return std::make_unique<SurroundingsTracker>(std::move(tracker), std::move(surroundings));

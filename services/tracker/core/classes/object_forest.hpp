@@ -42,6 +42,11 @@ struct ClassEvidenceParameters {
   double wide_range_rate_mps = 0.5;  ///< deviation of a range rate that is not the body's (measured: R)
   double least_in_view = 0.5;        ///< scans with a smaller probability of being in view are no misses (choice)
   double course_s = 0.5;             ///< between courses that are compared: noise is no turn (choice)
+  double gate_m = 1.5;               ///< a track's own detections are nearer to its box (choice: parts and noise) …
+  double gate_rad = 0.01;            ///< … by so much more of the range (choice: azimuth noise)
+  double gate_most_std_m = 2.0;      ///< … and by the track's own deviation up to this (choice)
+  double gate_mps = 1.5;             ///< largest deviation of their range rates (choice) …
+  double gate_by_speed = 0.3;        ///< … and so much more of the speed (choice: turning and swinging parts)
 };
 
 struct RadarLevelParameters {

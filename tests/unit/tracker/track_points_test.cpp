@@ -1,4 +1,4 @@
-#include "services/boresight/fit_classes/track_points.hpp"
+#include "services/tracker/core/classes/track_points.hpp"
 
 #include <cmath>
 #include <memory>
@@ -8,12 +8,12 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 
-namespace boresight::fit_classes {
+namespace boresight::tracking {
 namespace {
 
-class TrackPoints : public testing::Test {
+class PointsOfTracks : public testing::Test {
  protected:
-  TrackPoints() { scan_->fields = scan_field::kRcs; }
+  PointsOfTracks() { scan_->fields = scan_field::kRcs; }
 
   void detect(float x, float y, float range_rate_mps) {
     const auto i = scan_->number_of_valid_detections++;
@@ -34,17 +34,17 @@ class TrackPoints : public testing::Test {
   }
   [[nodiscard]] std::vector<std::size_t> numbers() const {
     std::vector<std::size_t> of_tracks;
-    for (const auto& points : points_of_tracks(moving_points(*scan_, 0, levels_), *list_)) {
-      of_tracks.push_back(points.size());
-    }
+    TrackPoints points{{}};
+    points.find(*scan_, 0, levels_, *list_);
+    for (std::size_t k = 0; k < list_->number_of_tracks; ++k) of_tracks.push_back(points.of(k).size());
     return of_tracks;
   }
   std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
   std::unique_ptr<TrackList> list_ = std::make_unique<TrackList>();
-  tracking::RadarLevels levels_{1, {}};
+  RadarLevels levels_{1, {}};
 };
 
-TEST_F(TrackPoints, DetectionBelongsToTheNearestTrackThatMovesLikeIt) {
+TEST_F(PointsOfTracks, DetectionBelongsToTheNearestTrackThatMovesLikeIt) {
   track(20.0F, 0.0F, 10.0F);
   track(20.0F, 3.5F, 10.0F);
   track(60.0F, 0.0F, 10.0F);
@@ -54,14 +54,14 @@ TEST_F(TrackPoints, DetectionBelongsToTheNearestTrackThatMovesLikeIt) {
   EXPECT_EQ(numbers(), (std::vector<std::size_t>{2, 1, 0}));
 }
 
-TEST_F(TrackPoints, DetectionOfAnotherRangeRateOrPlaceIsNoTracks) {
+TEST_F(PointsOfTracks, DetectionOfAnotherRangeRateOrPlaceIsNoTracks) {
   track(20.0F, 0.0F, 10.0F);
   detect(20.0F, 0.0F, -10.0F);
   detect(30.0F, 0.0F, 10.0F);
   EXPECT_EQ(numbers(), (std::vector<std::size_t>{0}));
 }
 
-TEST_F(TrackPoints, StationaryAndRejectedDetectionsAreNoPoints) {
+TEST_F(PointsOfTracks, StationaryAndRejectedDetectionsAreNoPoints) {
   track(20.0F, 0.0F, 10.0F);
   detect(20.0F, 0.0F, 10.0F);
   detect(20.0F, 0.0F, 10.0F);
@@ -70,7 +70,7 @@ TEST_F(TrackPoints, StationaryAndRejectedDetectionsAreNoPoints) {
   EXPECT_EQ(numbers(), (std::vector<std::size_t>{0}));
 }
 
-TEST_F(TrackPoints, RotatedRadarHasInViewWhatItLooksAt) {
+TEST_F(PointsOfTracks, RotatedRadarHasInViewWhatItLooksAt) {
   track(0.0F, 20.0F, 5.0F);
   RadarConfig radar;
   radar.field_of_view.azimuth_min_rad = -0.8;
@@ -86,4 +86,4 @@ TEST_F(TrackPoints, RotatedRadarHasInViewWhatItLooksAt) {
 }
 
 }  // namespace
-}  // namespace boresight::fit_classes
+}  // namespace boresight::tracking
