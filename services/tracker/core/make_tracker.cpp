@@ -34,7 +34,7 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
   auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
   auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);
   auto tracker = std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
-  // Whatever tracks the moving objects: what stands around the vehicle does not depend on it.
+  // Whatever tracks the moving objects: the surroundings do not depend on it.
   Surroundings surroundings(vehicle, config.surroundings, config.model.latest_scan_s, config.model.longest_gap_s);
   return std::make_unique<SurroundingsTracker>(std::move(tracker), std::move(surroundings));
 }
