@@ -268,7 +268,8 @@ void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
                                     {"highest_m", &s.highest_m, {0.5, 10.0}},
                                     {"mounting_std_rad", &s.mounting_std_rad, {0.0, 0.1}}});
   RoadEdgeParameters& e = p.road_edge;
-  read(root.table("road_edge"), {{"ahead_m", &e.ahead_m, {10.0, 150.0}},
+  read(root.table("road_edge"), {{"gate_sigma", &e.gate_sigma, {1.0, 10.0}},
+                                 {"ahead_m", &e.ahead_m, {10.0, 150.0}},
                                  {"band_half_width_m", &e.band_half_width_m, {0.05, 2.0}},
                                  {"cell_m", &e.cell_m, {2.0, 10.0}},
                                  {"contrast_probability", &e.contrast_probability, {0.34, 0.999}},
@@ -308,6 +309,7 @@ void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
                                      {"excess_std_db", &o.excess_std_db, {1.0, 60.0}},
                                      {"level_memory_s", &o.level_memory_s, {0.1, 1000.0}},
                                      {"level_range_m", &o.level_range_m, {5.0, 100.0}},
+                                     {"most_of_scan", &o.most_of_scan, {0.1, 100.0}},
                                      {"evidence_share", &o.evidence_share, {0.001, 1.0}},
                                      {"prior_log_odds", &o.prior_log_odds, {-50.0, 0.0}},
                                      {"most_log_odds", &o.most_log_odds, {0.0, 50.0}},
@@ -329,7 +331,9 @@ void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
                                  {"oncoming_probability", &c.oncoming_probability, {0.01, 1.0}},
                                  {"oncoming_speed_mps", &c.oncoming_speed_mps, {0.0, 50.0}},
                                  {"warning_deceleration_mps2", &c.warning_deceleration_mps2, {0.0, 20.0}},
+                                 {"warning_lateral_mps2", &c.warning_lateral_mps2, {-20.0, 20.0}},
                                  {"hold_s", &c.hold_s, {0.0, 5.0}},
+                                 {"obstacle_hold_s", &c.obstacle_hold_s, {0.0, 5.0}},
                                  {"least_existence", &c.least_existence, {0.0, 1.0}},
                                  {"report_probability", &c.report_probability, {0.0, 1.0}}});
 }

@@ -29,7 +29,7 @@ PURE_EXCEPTIONS = {("services/ingest_gateway/codecs/report.cpp", "cstdio")}
 
 # Units that a float of a message may carry, and names that stand for a pure number.
 UNIT = re.compile(r"_(m|s|ms|us|ns|hz|rad|radps|radps2pm|mps|mps2|db|dbsm|m2)$")
-PURE_NUMBER = re.compile(r"(probability|ratio|skewness|kurtosis|speed_scale(_std)?|covariance|sensor_to_vehicle|"
+PURE_NUMBER = re.compile(r"(probability|ratio|skewness|kurtosis|speed_scale(_std)?|covariance|coefficients|sensor_to_vehicle|"
                          r"detections_per_scan|seconds_of_drive|seconds_to_95_percent|drift_per_minute|nees|"
                          r"(angle|range_rate)_noise_scale)$|^values$|"
                          # The unit is that of the field which holds the pair, or depends on the kind of change or finding.

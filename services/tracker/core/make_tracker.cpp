@@ -45,7 +45,7 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
   if (name == "classical" && !config.forest.table.trees.empty()) {
     tracker = std::make_unique<ClassifyingTracker>(std::move(tracker), TrackEvidence(vehicle, config.forest));
   }
-  // Whatever tracks the moving objects: what stands around the vehicle does not depend on it.
+  // Whatever tracks the moving objects: the surroundings do not depend on it.
   Surroundings surroundings(vehicle, config.surroundings, config.model.latest_scan_s, config.model.longest_gap_s);
   return std::make_unique<SurroundingsTracker>(std::move(tracker), std::move(surroundings));
 }

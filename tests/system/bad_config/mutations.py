@@ -245,7 +245,9 @@ add_values("health",
 add_values("tracker",
            ("probability", "nan", "detection.probability"), ("probability", "0", "detection.probability"),
            ("confirmed_existence", "0.03", "report.confirmed_existence"),
-           ("group_objects", "250", None), ("group_objects", "257", "capacity.group_objects"), ("tracker", '"pmbmm"', "tracker"))
+           ("group_objects", "250", None), ("group_objects", "257", "capacity.group_objects"),
+           ("band_half_width_m", "nan", "road_edge.band_half_width_m"), ("warning_probability", "0", "collision.warning_probability"),
+           ("corridor_m", "0", "path_obstacle.corridor_m"), ("tracker", '"pmbmm"', "tracker"))
 add_values("object_classes", ("prior_share", "[1, 1, 1, 1, 1]", "prior_share"), ("length_mean_m", "[1, 2]", "size.length_mean_m"))
 add_values("detection_corrector",
            ("min_m", "[300.0, -60.0, -2.0]", "region_of_interest.min_m"), ("min_m", "[nan, -60.0, -2.0]", "region_of_interest.min_m"),

@@ -13,6 +13,7 @@ namespace {
 constexpr double kLeastClosing_mps = 0.1;  // slower is standing still to one another: keeps the time finite
 constexpr double kLeastGap_m = 0.1;        // keeps the deceleration finite
 constexpr double kLeastDeviation_m = 1e-3;
+constexpr double kLeastTime_s = 0.05;  // keeps the lateral acceleration finite
 
 double normal_below(double deviations) {
   return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
@@ -43,7 +44,7 @@ Meeting meeting(const MeetingObject& object, const EgoPath& path, const Collisio
     m.closing_mps = path.speed_mps - along.dot(object.velocity_mps);
     const double gap_m = place.along_m - 0.5 * m.length_m - parameters.front_m - path.speed_mps * time_s;
     if (k == 0) {
-      m.is_ahead = place.along_m > parameters.front_m;
+      m.is_ahead = gap_m > 0.0;  // what is alongside is not met by the front
       m.offset_m = place.aside_m;
       m.deceleration_mps2 =
           m.closing_mps > 0.0 ? 0.5 * m.closing_mps * m.closing_mps / std::max(kLeastGap_m, gap_m) : 0.0;
@@ -69,6 +70,8 @@ Meeting meeting(const MeetingObject& object, const EgoPath& path, const Collisio
   const double path_m2 = path.variance_m2(time_s, parameters.lateral_jerk_density_m2ps5);
   m.offset_std_m = std::sqrt(m.object_std_m * m.object_std_m + path_m2);
   m.probability = overlap(m, m.offset_m, m.offset_std_m, parameters);
+  const double aside_m = 0.5 * (parameters.width_m + m.width_m) - std::abs(m.offset_m);
+  m.lateral_mps2 = 2.0 * aside_m / std::max(kLeastTime_s * kLeastTime_s, time_s * time_s);
   return m;
 }
 

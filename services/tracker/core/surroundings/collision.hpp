@@ -21,8 +21,10 @@ struct Meeting {
   bool is_ahead = false;  ///< before the vehicle's front; all else is valid only then
   double time_s;          ///< until the vehicle's front reaches the object's nearest face; +infinity: never
   double time_std_s;
-  double closing_mps;             ///< along the path
-  double deceleration_mps2;       ///< constant one with which the vehicle would just not reach the object
+  double closing_mps;        ///< along the path
+  double deceleration_mps2;  ///< constant one with which the vehicle would just not reach the object
+  double
+      lateral_mps2;  ///< constant lateral acceleration with which the vehicle would just pass beside it; < 0: it does
   double offset_m, offset_std_m;  ///< of the object's centre from the path at that time, + left
   Eigen::Vector2d place_m;        ///< of the object's centre then, in the vehicle frame of now
   double object_std_m;            ///< of that place across the path
@@ -32,7 +34,7 @@ struct Meeting {
 
 [[nodiscard]] Meeting meeting(const MeetingObject& object, const EgoPath& path, const CollisionParameters& parameters);
 
-/// Takes into account that the vehicle may follow the road, (W14): `course` of the object's place at the meeting.
+/// Takes into account that the vehicle may follow the road: `course` of the object's place at the meeting.
 void follow_road(const RoadCourse& course, const CollisionParameters& parameters, Meeting& m);
 
 }  // namespace boresight::tracking

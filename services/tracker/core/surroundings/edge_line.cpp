@@ -10,9 +10,6 @@ namespace {
 
 /// A detection with a smaller probability of lying on the line says nothing about the line.
 constexpr double kLeastWeight = 0.05;
-/// Detections farther from the line than that many deviations are beside it.
-constexpr double kGate_sigma = 3.0;
-
 /// The x of the line's place that lies at x = 0 of axes turned by `yaw_rad`: cos·x + sin·y(x) = 0, by Newton's method.
 double abeam(const Eigen::Vector3d& c, double yaw_rad) {
   constexpr int kSteps = 3;
@@ -60,10 +57,10 @@ EdgeEvidence EdgeLine::update(std::span<const StationaryPoint> points, double si
     const double x = p.position_m.x();
     if (x > parameters.ahead_m) continue;
     const double residual = p.position_m.y() - at(x);
-    if (std::abs(residual) > 2.0 * kGate_sigma * parameters.band_half_width_m) continue;
+    if (std::abs(residual) > 2.0 * parameters.gate_sigma * parameters.band_half_width_m) continue;
     const double noise = noise_m2(p, scatter_m2, parameters);
     const double spread = noise + variance_m2(x);
-    if (residual * residual > kGate_sigma * kGate_sigma * spread) continue;
+    if (residual * residual > parameters.gate_sigma * parameters.gate_sigma * spread) continue;
     const double on =
         densities.on * std::exp(-0.5 * residual * residual / spread) / std::sqrt(2.0 * std::numbers::pi * spread);
     const double beside = residual * side < 0.0 ? densities.inner_per_m : densities.outer_per_m;

@@ -12,7 +12,7 @@
 
 namespace boresight::tracking {
 
-/// Detections per metre across the line, over its length, by which one is told from those beside it.
+/// Detections per metre across the line, over its length, by which one is distinguished from those beside it.
 struct EdgeDensities {
   double on = 1.0;  ///< number on the line, without those beside it
   double inner_per_m = 1.0, outer_per_m = 1.0;

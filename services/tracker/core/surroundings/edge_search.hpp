@@ -11,8 +11,8 @@
 
 namespace boresight::tracking {
 
-/// Evidence of a piece of a line: log likelihood ratio of an edge against a place like any other. The piece wins if it
-/// holds more detections than the bands on both of its sides.
+/// Evidence of a segment of a line: log likelihood ratio of an edge against a place like any other. The segment wins if
+/// it holds more detections than the bands on both of its sides.
 class ContrastVote {
  public:
   explicit ContrastVote(const RoadEdgeParameters& parameters);
@@ -31,17 +31,18 @@ class ContrastVote {
 struct FoundEdge {
   bool is_found = false;
   Eigen::Vector3d c{0.0, 0.0, 0.0};
-  double votes = 0.0;  ///< sum of the log likelihood ratios of its pieces
+  double votes = 0.0;  ///< sum of the log likelihood ratios of its segments
   double on = 0.0;     ///< detections on the line less those expected there without it
   double inner_per_m = 0.0, outer_per_m = 0.0;
 };
 
 class EdgeSearch {
  public:
-  explicit EdgeSearch(const RoadEdgeParameters& parameters);
+  /// From `behind_m` behind the vehicle on.
+  EdgeSearch(const RoadEdgeParameters& parameters, double behind_m);
 
   /// The innermost line of one side, +1 left or −1 right, about the path with its curvature changed by `bend_per_m`.
-  /// Places where `is_taken` (distance from the path, at `kReference_m` ahead) are left out.
+  /// Places where `is_taken` (distance from the path, at `kReference_m` ahead) are not searched.
   template <typename Taken>
   FoundEdge search(std::span<const Eigen::Vector2d> places, const EgoPath& path, double side, double bend_per_m,
                    const Taken& is_taken) {
@@ -51,20 +52,22 @@ class EdgeSearch {
   static constexpr double kReference_m = 10.0;
 
  private:
-  static constexpr std::size_t kPieces = 20, kBins = 72;
+  static constexpr std::size_t kSegments = 20, kBins = 72;
   static constexpr int kSlopes = 3;  // to either side
   static constexpr int kBand = 3;    // bins of a band
   void fill(std::span<const Eigen::Vector2d> places, double curvature_per_m, double side);
-  /// Number in the bins [first, first + kBand) of a piece.
-  [[nodiscard]] double count(std::size_t piece, int first) const {
-    const auto& sums = sums_[piece];
+  /// Number in the bins [first, first + kBand) of a segment.
+  [[nodiscard]] double count(std::size_t segment, int first) const {
+    const auto& sums = sums_[segment];
     const auto at = [&sums](int b) {
       return sums[static_cast<std::size_t>(std::clamp(b, 0, static_cast<int>(kBins)))];
     };
     return at(first + kBand) - at(first);
   }
-  [[nodiscard]] double middle_m(std::size_t piece) const;
-  FoundEdge evaluate(int bin, double slope, double curvature_per_m, double side) const;
+  [[nodiscard]] double middle_m(std::size_t segment) const;
+  /// Sum of the votes of a line that begins with that bin at the vehicle.
+  [[nodiscard]] double votes(int bin, double slope) const;
+  [[nodiscard]] FoundEdge line(int bin, double slope, double curvature_per_m) const;
 
   template <typename Taken>
   FoundEdge best(double curvature_per_m, double side, const Taken& is_taken) const {
@@ -74,21 +77,24 @@ class EdgeSearch {
     FoundEdge found;
     for (int b = first, last = static_cast<int>(kBins) - kBand; b < last; ++b) {
       for (int k = -kSlopes; k <= kSlopes; ++k) {
-        const FoundEdge edge = evaluate(b, k * parameters_.slope_step, curvature_per_m, side);
-        if (edge.votes < least || edge.votes <= found.votes) continue;
-        if (is_taken(side * (edge.c(0) + edge.c(1) * kReference_m))) continue;
-        found = edge;
-        found.is_found = true;
+        const double slope = k * parameters_.slope_step;
+        const double sum = votes(b, slope);
+        if (sum < least || sum <= found.votes) continue;
+        if (is_taken((b + 0.5 * kBand) * bin_m_ + slope * kReference_m)) continue;
+        found = line(b, slope, curvature_per_m);
         last = std::min(last, b + separate);  // what is farther out is another line
       }
     }
+    found.c(0) *= side;
+    found.c(1) *= side;
     return found;
   }
 
   RoadEdgeParameters parameters_;
   ContrastVote vote_;
-  double bin_m_;
-  std::array<std::array<float, kBins + 1>, kPieces> sums_{};  // by piece: detections before a bin
+  double bin_m_, behind_m_;
+  std::array<std::array<float, kBins + 1>, kSegments> sums_{};  // by segment: detections before a bin
+  std::array<std::array<float, kBins>, kSegments> votes_{};     // by segment: of the line whose band begins with a bin
 };
 
 }  // namespace boresight::tracking

@@ -10,11 +10,15 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr std::size_t kMaxPlaces = 512;                         // of the memory that are clustered
-constexpr std::uint32_t kScansPerSearch = 5;                    // new obstacles are looked for in each such scan
-constexpr double kDensityInner_m = 2.5, kDensityOuter_m = 7.5;  // from the path: where its surroundings are counted
+constexpr std::size_t kMaxPlaces = 512;               // of the memory that are clustered
+constexpr std::uint32_t kLooksPerSearch = 3;          // new obstacles are looked for in each such look of the memory
 constexpr double kUniformHalf = std::numbers::sqrt3;  // half width of a uniform density by its standard deviation
-constexpr double kLeastDetections = 1e-3;             // expected: keeps the logarithm finite
+
+/// Whether a place lies within a distance of the path: (W1) solved for the numerator, without its root.
+bool is_within(const EgoPath& path, const Eigen::Vector2d& p, double distance_m) {
+  const double k = path.curvature_per_m, twice_m = 2.0 * p.y() - k * p.squaredNorm();
+  return twice_m < distance_m * (2.0 - k * distance_m) && twice_m > -distance_m * (2.0 + k * distance_m);
+}
 
 }  // namespace
 
@@ -38,11 +42,6 @@ void PathObstacles::clear() {
   }
 }
 
-double PathObstacles::gate_m(const PathObstacle& o) const {
-  const double largest = kUniformHalf * std::sqrt(std::max(o.spread_m2(0, 0), o.spread_m2(1, 1)));
-  return parameters_.gate_m + std::min(largest, parameters_.corridor_m);
-}
-
 void PathObstacles::step(const ClassifiedScan& scan, const StationaryMemory& memory, const EgoPath& path,
                          const geometry::EgoStep& step, double elapsed_s) {
   move(step, elapsed_s);
@@ -52,7 +51,7 @@ void PathObstacles::step(const ClassifiedScan& scan, const StationaryMemory& mem
   for (std::size_t k = 0; k < obstacles_.size(); ++k) update(obstacles_[k], memory, k, elapsed_s);
   drop();
   learn_density(memory, path, radars_[static_cast<std::size_t>(memory.radar())], elapsed_s);
-  if (scans_++ % kScansPerSearch == 0) start(memory, path);
+  if (!memory.places().empty() && scans_++ % kLooksPerSearch == 0) start(memory, path);
 }
 
 void PathObstacles::move(const geometry::EgoStep& step, double elapsed_s) {
@@ -72,11 +71,10 @@ void PathObstacles::associate(const StationaryMemory& memory, const EgoPath& pat
   owner_.clear();
   for (const StationaryPoint& p : memory.scan()) {
     std::int32_t owner = -1;
-    const PathPlace place = path.place(p.position_m);
-    if (std::abs(place.aside_m) < parameters_.corridor_m + parameters_.gate_m) {
+    if (!obstacles_.empty() && is_within(path, p.position_m, parameters_.corridor_m)) {
       double nearest = 1.0;
       for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-        const double share = (p.position_m - obstacles_[k].position_m).norm() / gate_m(obstacles_[k]);
+        const double share = (p.position_m - obstacles_[k].position_m).norm() / parameters_.gate_m;
         if (share >= nearest) continue;
         nearest = share;
         owner = static_cast<std::int32_t>(k);
@@ -114,15 +112,14 @@ void PathObstacles::judge(const ClassifiedScan& scan, const StationaryMemory& me
     }
     const double along_m = std::max(0.0, path.place(o.position_m).along_m);
     const auto bin = std::min(kBins - 1, static_cast<std::size_t>(along_m / kBin_m));
-    const double area_m2 = std::numbers::pi * parameters_.gate_m * parameters_.gate_m;
+    const double area_m2 = 4.0 * parameters_.gate_m * std::min(parameters_.corridor_m, parameters_.gate_m);
     const double usual = parameters_.background_factor * radar.density_per_m2[bin] * area_m2;
-    const double background = std::max(parameters_.background_count, usual) + kLeastDetections;
+    const double background = parameters_.background_count + usual;
     const double vehicle =
         parameters_.count * std::pow(parameters_.count_range_m / range_m, parameters_.count_power) + usual;
     const double count = detections * std::log(vehicle / background) - (vehicle - background);
-    // One scan cannot decide: its detections have causes in common.
-    constexpr double kMostOfScan = 4.0;
-    o.log_odds += parameters_.evidence_share * std::clamp(count + strength, -kMostOfScan, kMostOfScan);
+    o.log_odds +=
+        parameters_.evidence_share * std::clamp(count + strength, -parameters_.most_of_scan, parameters_.most_of_scan);
     o.log_odds = std::min(o.log_odds, parameters_.most_log_odds);
   }
 }
@@ -163,13 +160,13 @@ void PathObstacles::drop() {
 void PathObstacles::learn_density(const StationaryMemory& memory, const EgoPath& path, Radar& radar, double elapsed_s) {
   std::array<double, kBins> count{};
   for (const StationaryPoint& p : memory.scan()) {
-    const PathPlace place = path.place(p.position_m);
-    const double aside_m = std::abs(place.aside_m);
-    if (place.along_m < 0.0 || aside_m < kDensityInner_m || aside_m > kDensityOuter_m) continue;
-    const auto bin = static_cast<std::size_t>(place.along_m / kBin_m);
+    if (!is_within(path, p.position_m, parameters_.corridor_m)) continue;
+    const double along_m = path.place(p.position_m).along_m;
+    if (along_m < 0.0) continue;
+    const auto bin = static_cast<std::size_t>(along_m / kBin_m);
     if (bin < kBins) count[bin] += 1.0;
   }
-  const double area_m2 = 2.0 * (kDensityOuter_m - kDensityInner_m) * kBin_m;
+  const double area_m2 = 2.0 * parameters_.corridor_m * kBin_m;
   // Each radar's scans come once for all radars' steps.
   const double passed_s = std::max(0.0, elapsed_s) * static_cast<double>(radars_.size());
   const double least = passed_s / parameters_.background_memory_s;
@@ -183,7 +180,7 @@ void PathObstacles::start(const StationaryMemory& memory, const EgoPath& path) {
   places_.clear();
   for (const Eigen::Vector2d& p : memory.places()) {
     if (p.x() < front_m_ || places_.size() == kMaxPlaces) continue;
-    if (std::abs(path.place(p).aside_m) < parameters_.corridor_m) places_.push_back(p);
+    if (is_within(path, p, parameters_.corridor_m)) places_.push_back(p);
   }
   const auto least = static_cast<std::size_t>(parameters_.least_detections);
   const std::size_t found = clusters_.cluster(places_, parameters_.cluster_radius_m, least);
@@ -199,8 +196,9 @@ void PathObstacles::start(const StationaryMemory& memory, const EgoPath& path) {
       n += 1.0;
     }
     mean /= n;
-    const bool is_known = std::any_of(obstacles_.begin(), obstacles_.end(),
-                                      [&](const PathObstacle& o) { return (o.position_m - mean).norm() < gate_m(o); });
+    const bool is_known = std::any_of(obstacles_.begin(), obstacles_.end(), [&](const PathObstacle& o) {
+      return (o.position_m - mean).norm() < parameters_.gate_m;
+    });
     if (is_known) continue;
     PathObstacle o;
     o.id = next_id_++;

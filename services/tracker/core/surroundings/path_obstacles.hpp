@@ -45,7 +45,7 @@ class PathObstacles {
   struct Radar {
     std::uint32_t id;
     FieldOfView view;
-    std::array<double, kBins> density_per_m2{};  ///< of stationary detections in a scan, beside the path
+    std::array<double, kBins> density_per_m2{};  ///< of stationary detections in a scan, in the swept path
     double weight = 0.0;
   };
   void move(const geometry::EgoStep& step, double elapsed_s);
@@ -55,7 +55,6 @@ class PathObstacles {
   void update(PathObstacle& o, const StationaryMemory& memory, std::size_t index, double elapsed_s);
   void start(const StationaryMemory& memory, const EgoPath& path);
   void drop();
-  [[nodiscard]] double gate_m(const PathObstacle& o) const;
 
   ObstacleParameters parameters_;
   double front_m_;

@@ -7,17 +7,14 @@ namespace boresight::tracking {
 
 namespace {
 
-/// Standard deviations of a line as it is found, in steps of the search.
-constexpr double kStartSteps = 1.0;
-
 double probability(double log_odds) {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
 }  // namespace
 
-RoadEdges::RoadEdges(const RoadEdgeParameters& parameters)
-    : parameters_(parameters), vote_(parameters), search_(parameters) {}
+RoadEdges::RoadEdges(const RoadEdgeParameters& parameters, double behind_m)
+    : parameters_(parameters), behind_m_(behind_m), vote_(parameters), search_(parameters, behind_m) {}
 
 void RoadEdges::clear() {
   for (Edge& e : edges_) e = {};
@@ -34,7 +31,7 @@ void RoadEdges::step(const StationaryMemory& memory, const EgoPath& path, const 
     if (!is_alive(e)) e = {};
   }
   drop_doubles();
-  if (memory.radar() >= 0) start(memory, path);
+  if (!memory.places().empty()) start(memory, path);
 }
 
 void RoadEdges::update(Edge& e, const StationaryMemory& memory, double elapsed_s) {
@@ -46,11 +43,10 @@ void RoadEdges::update(Edge& e, const StationaryMemory& memory, double elapsed_s
   e.is_seen = found.is_seen;
   // The scatter is learnt from what the lines of sight measure well.
   const double keep = std::exp(-time_s / parameters_.scatter_memory_s);
-  const double prior_weight = 1.0;
   e.scatter_weight = keep * e.scatter_weight;
   if (found.weights > 0.0) {
-    const double sum = e.scatter_weight + found.weights + prior_weight;
-    e.scatter_m2 = ((e.scatter_weight + prior_weight) * e.scatter_m2 + found.squares_m2) / sum;
+    const double sum = e.scatter_weight + found.weights + 1.0;
+    e.scatter_m2 = ((e.scatter_weight + 1.0) * e.scatter_m2 + found.squares_m2) / sum;
     const double least_m2 = 0.25 * parameters_.scatter_m * parameters_.scatter_m;
     const double most_m2 = parameters_.band_half_width_m * parameters_.band_half_width_m;
     e.scatter_m2 = std::clamp(e.scatter_m2, least_m2, most_m2);
@@ -70,7 +66,7 @@ void RoadEdges::count(Edge& e, const StationaryMemory& memory, double elapsed_s)
   const double band_m = parameters_.band_half_width_m;
   for (const StationaryPoint& p : memory.scan()) {
     const double x = p.position_m.x();
-    if (x < -kBehind_m || x > parameters_.ahead_m) continue;
+    if (x < -behind_m_ || x > parameters_.ahead_m) continue;
     const double outside_m = e.side * (p.position_m.y() - e.line.at(x));
     if (std::abs(outside_m) > 3.0 * band_m) continue;
     const auto place = static_cast<std::int64_t>(std::floor((driven_m_ + x) / parameters_.cell_m));
@@ -81,11 +77,11 @@ void RoadEdges::count(Edge& e, const StationaryMemory& memory, double elapsed_s)
 }
 
 void RoadEdges::judge(Edge& e) {
-  const auto first = static_cast<std::int64_t>(std::floor((driven_m_ - kBehind_m) / parameters_.cell_m));
+  const auto first = static_cast<std::int64_t>(std::floor((driven_m_ - behind_m_) / parameters_.cell_m));
   const auto last = static_cast<std::int64_t>(std::floor((driven_m_ + parameters_.ahead_m) / parameters_.cell_m));
   double on = 0.0, inner = 0.0, outer = 0.0;
   e.log_odds = parameters_.prior_log_odds;
-  // The longest run of winning pieces whose gaps are short.
+  // The longest run of winning segments whose gaps are short.
   double run_start_m = 0.0, run_end_m = 0.0;
   bool in_run = false, has_run = false;
   e.start_m = e.end_m = 0.0;
@@ -131,7 +127,7 @@ void RoadEdges::drop_doubles() {
 }
 
 void RoadEdges::start(const StationaryMemory& memory, const EgoPath& path) {
-  // One of two sides and three curvatures a scan.
+  // One of two sides and three curvatures a time.
   constexpr std::uint32_t kBends = 3, kSides = 2;
   const std::uint32_t turn = turn_++ % (kBends * kSides);
   const double side = turn % kSides == 0 ? 1.0 : -1.0;
@@ -159,17 +155,17 @@ void RoadEdges::start(const StationaryMemory& memory, const EgoPath& path) {
   if (next_id_ == 0) next_id_ = 1;
   free->side = side;
   free->line.c = found.c;
-  const Eigen::Vector3d start_std(kStartSteps * parameters_.band_half_width_m, kStartSteps * parameters_.slope_step,
-                                  kStartSteps * parameters_.curvature_step_per_m);
+  const Eigen::Vector3d start_std(parameters_.band_half_width_m, parameters_.slope_step,
+                                  parameters_.curvature_step_per_m);
   free->line.covariance = start_std.cwiseAbs2().asDiagonal();
   free->densities = {found.on, found.inner_per_m + 0.1, found.outer_per_m + 0.1};
   free->scatter_m2 = parameters_.scatter_m * parameters_.scatter_m;
   free->log_odds = parameters_.prior_log_odds + found.votes;
   free->end_m = parameters_.cell_m;
-  // The memory shows the line's pieces at once.
+  // The memory shows the line's segments at once.
   for (const Eigen::Vector2d& p : memory.places()) {
     const double outside_m = side * (p.y() - free->line.at(p.x())), band_m = parameters_.band_half_width_m;
-    if (p.x() < -kBehind_m || p.x() > parameters_.ahead_m || std::abs(outside_m) > 3.0 * band_m) continue;
+    if (p.x() < -behind_m_ || p.x() > parameters_.ahead_m || std::abs(outside_m) > 3.0 * band_m) continue;
     const auto place = static_cast<std::int64_t>(std::floor((driven_m_ + p.x()) / parameters_.cell_m));
     Cell& cell = free->cells[static_cast<std::size_t>(place) % kCells];
     if (cell.place != place) cell = {place};

@@ -20,7 +20,8 @@ struct RoadCourse {
 
 class RoadEdges {
  public:
-  explicit RoadEdges(const RoadEdgeParameters& parameters);
+  /// Edges are counted from `behind_m` behind the vehicle on.
+  RoadEdges(const RoadEdgeParameters& parameters, double behind_m);
 
   void clear();
   /// Moves the edges with the vehicle, then takes the scan. `elapsed_s` may be negative.
@@ -32,11 +33,10 @@ class RoadEdges {
 
  private:
   static constexpr std::size_t kCells = 32;  // more than ahead_m and the part behind have
-  static constexpr double kBehind_m = 10.0;
 
-  /// Decayed numbers of detections of one piece of the line: on it, and in the bands beside it.
+  /// Decayed numbers of detections of one segment of the line: on it, and in the bands beside it.
   struct Cell {
-    std::int64_t place = -1;  ///< number of the piece by the way driven
+    std::int64_t place = -1;  ///< number of the segment by the way driven
     double on = 0.0, inner = 0.0, outer = 0.0;
   };
   struct Edge {
@@ -60,6 +60,7 @@ class RoadEdges {
   void drop_doubles();
 
   RoadEdgeParameters parameters_;
+  double behind_m_;
   ContrastVote vote_;
   EdgeSearch search_;
   std::array<Edge, kMaxRoadEdges> edges_{};

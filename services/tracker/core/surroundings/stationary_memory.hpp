@@ -42,7 +42,7 @@ class StationaryMemory {
 
   /// Of the present scan; empty if the scan is of no use.
   [[nodiscard]] std::span<const StationaryPoint> scan() const { return scan_; }
-  /// Position in the vehicle frame, of the present and the last scans.
+  /// Position in the vehicle frame, of the present and the last scans. Empty in every other scan, to save time.
   [[nodiscard]] std::span<const Eigen::Vector2d> places() const { return places_; }
   /// Index of the radar in the vehicle, or −1: its scan is of no use.
   [[nodiscard]] int radar() const { return radar_; }

@@ -27,7 +27,7 @@ Surroundings::Surroundings(const VehicleConfig& vehicle, const SurroundingsParam
       latest_scan_s_(latest_scan_s),
       longest_gap_s_(longest_gap_s),
       memory_(vehicle, parameters.stationary, parameters.obstacle),
-      edges_(parameters.road_edge),
+      edges_(parameters.road_edge, parameters.stationary.behind_m),
       obstacles_(vehicle, parameters.obstacle, parameters.collision.front_m) {
   listed_.reserve(kMaxListed);
 }
@@ -117,7 +117,7 @@ bool Surroundings::is_threat(const PathObject& object, const Meeting& m) const {
   const CollisionParameters& c = parameters_.collision;
   const bool is_oncoming = m.closing_mps > path_.speed_mps + c.oncoming_speed_mps;
   return path_.speed_mps >= c.least_speed_mps && m.time_s <= c.warning_time_s &&
-         m.deceleration_mps2 >= c.warning_deceleration_mps2 &&
+         m.deceleration_mps2 >= c.warning_deceleration_mps2 && m.lateral_mps2 >= c.warning_lateral_mps2 &&
          static_cast<double>(object.existence_probability) >= c.least_existence &&
          m.probability >= (is_oncoming ? c.oncoming_probability : c.warning_probability);
 }
@@ -141,8 +141,9 @@ void Surroundings::list(PathObject object, const MeetingObject& meets) {
   Meeting m = meeting(meets, path_, c);
   if (!m.is_ahead || !(m.time_s <= c.horizon_s)) return;
   follow_road(edges_.course(m.place_m), c, m);
+  const double hold_s = object.kind == PathObjectKind::kTrack ? c.hold_s : c.obstacle_hold_s;
   const double collision = m.probability * static_cast<double>(object.existence_probability);
-  if (is_threat(object, m) && note_threat(object.object_id, object.kind) >= c.hold_s) object.warning = 1;
+  if (is_threat(object, m) && note_threat(object.object_id, object.kind) >= hold_s) object.warning = 1;
   if (collision < c.report_probability && object.warning == 0) return;
   object.collision_probability = static_cast<float>(collision);
   object.time_to_collision_s = static_cast<float>(m.time_s);

@@ -1,4 +1,4 @@
-// What stands around the vehicle: road edges, obstacles on its path, and warnings of collisions.
+// Stationary surroundings of the vehicle: road edges, obstacles on its path, and warnings of collisions.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Any tracker, with what stands around the vehicle.
+// Any tracker, with the surroundings of the vehicle.
 #pragma once
 
 #include <memory>
