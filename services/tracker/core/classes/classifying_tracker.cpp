@@ -1,18 +1,10 @@
 #include "services/tracker/core/classes/classifying_tracker.hpp"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
+#include "services/tracker/core/output/published_class.hpp"
+
 namespace boresight::tracking {
-
-namespace {
-
-/// Of extended_object::RoadUserClass, in its order.
-constexpr std::array kClasses = {ObjectClass::kPedestrian, ObjectClass::kTwoWheeler, ObjectClass::kCar,
-                                 ObjectClass::kVan, ObjectClass::kTruck};
-
-}  // namespace
 
 ClassifyingTracker::ClassifyingTracker(std::unique_ptr<MultiObjectTracker> tracker, TrackEvidence evidence)
     : tracker_(std::move(tracker)), evidence_(std::move(evidence)), list_(std::make_unique<TrackList>()) {}
@@ -30,11 +22,7 @@ void ClassifyingTracker::write(TrackList& out) const {
     Track& track = out.tracks[k];
     const ClassEvidence* const evidence = evidence_.find(track.tracking_id);
     if (evidence == nullptr) continue;
-    const ClassProbabilities p = evidence_.classifier().probabilities(*evidence);
-    for (std::size_t c = 0; c < p.size(); ++c) {
-      track.class_probability[static_cast<std::size_t>(kClasses[c])] = static_cast<float>(p[c]);
-    }
-    track.object_class = kClasses[static_cast<std::size_t>(std::max_element(p.begin(), p.end()) - p.begin())];
+    publish_class(evidence_.classifier().probabilities(*evidence), track);
   }
 }
 

@@ -1,12 +1,12 @@
 #include "services/tracker/core/output/track_reporter.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
 #include "services/common/geometry/frames.hpp"
 #include "services/tracker/core/numeric.hpp"
+#include "services/tracker/core/output/published_class.hpp"
 
 namespace boresight::tracking {
 
@@ -15,20 +15,6 @@ namespace {
 double log_odds(double p) {
   const double q = std::clamp(p, kLeastProbability, 1.0 - kLeastProbability);
   return std::log(q / (1.0 - q));
-}
-
-/// Class probabilities and the likeliest class.
-void set_class(const BoxMemory& object, Track& t) {
-  using extended_object::RoadUserClass;
-  constexpr std::array kClasses = {ObjectClass::kPedestrian, ObjectClass::kTwoWheeler, ObjectClass::kCar,
-                                   ObjectClass::kVan, ObjectClass::kTruck};
-  static_assert(kClasses.size() == extended_object::kRoadUserClasses);
-  std::size_t likeliest = 0;
-  for (std::size_t k = 0; k < kClasses.size(); ++k) {
-    t.class_probability[static_cast<std::size_t>(kClasses[k])] = static_cast<float>(object.probability[k]);
-    if (object.probability[k] > object.probability[likeliest]) likeliest = k;
-  }
-  t.object_class = kClasses[likeliest];
 }
 
 }  // namespace
@@ -97,7 +83,7 @@ void TrackReporter::write_track(const ObjectEstimate& e, const Record& r, Track&
   t.update = e.detected ? TrackUpdate::kMeasured : TrackUpdate::kPredicted;
   const double speed_mps = std::sqrt(squared_norm(velocity));
   t.movement = speed_mps < parameters_.stopped_speed_mps ? MovementState::kStopped : MovementState::kMoving;
-  if (const BoxMemory* object = model_->memory(e.id); object != nullptr) set_class(*object, t);
+  if (const BoxMemory* object = model_->memory(e.id); object != nullptr) publish_class(object->probability, t);
   t.age_s = static_cast<float>(r.age_s);
   t.time_since_update_s = static_cast<float>(r.since_detection_s);
   t.existence_probability = static_cast<float>(e.existence);
