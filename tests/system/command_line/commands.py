@@ -160,7 +160,7 @@ def prepare():
     (TMP / "reflectors.csv").write_text("x_m,y_m,z_m,range_m,azimuth_deg\n" + "".join(
         f"{10 + 3 * i},8,0.6,{10 + 3 * i},{10 - 0.1 * i}\n" for i in range(12)))
     (TMP / "one_object.csv").write_text("k,range,azimuth_rad,radial_speed\n" + "".join(
-        f"{k},{50 - 0.5 * k},0.01,-10\n" for k in range(200)))
+        f"{k},{150 - 0.5 * k},0.01,-10\n" for k in range(200)))
     (TMP / "record.txt").write_text("")
     os.mkfifo(TMP / "pipe")
     (TMP / "live").mkdir()
