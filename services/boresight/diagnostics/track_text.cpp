@@ -48,6 +48,28 @@ std::string track_line(const perception::Track& t) {
       number(t.existence_probability(), 2));
 }
 
+std::string_view side_word(const perception::RoadEdge& edge) {
+  return edge.side() == perception::LEFT_SIDE ? "left" : "right";
+}
+
+std::string edge_line(const perception::RoadEdge& e) {
+  const auto number = [](float value, int decimals) { return text::fixed(value, decimals); };
+  return fmt::format("  road edge {} {}: y {} m, slope {}, curvature {} /m, from x {} to {} m, existence {}",
+                     e.edge_id(), side_word(e), number(e.coefficients()[0], 2), number(e.coefficients()[1], 3),
+                     number(e.coefficients()[2], 4), number(e.start_x_m(), 0), number(e.end_x_m(), 0),
+                     number(e.existence_probability(), 2));
+}
+
+std::string object_line(const perception::PathObject& o) {
+  const auto number = [](float value, int decimals) { return text::fixed(value, decimals); };
+  return fmt::format("  {} {} {}: x {} m, y {} m, in {} ± {} s, probability {}",
+                     o.warning() != 0 ? "collision warning:" : "on the path:",
+                     o.kind() == perception::TRACKED_OBJECT ? "track" : "obstacle", o.object_id(),
+                     number(o.position_vehicle_m()[0], 1), number(o.position_vehicle_m()[1], 1),
+                     number(o.time_to_collision_s(), 1), number(o.time_to_collision_std_s(), 1),
+                     number(o.collision_probability(), 2));
+}
+
 template <typename Numbers>
 json::Value numbers_of(const Numbers& values) {
   json::Value array = json::Value::array();
@@ -82,6 +104,45 @@ json::Value track_object(const perception::Track& t) {
   return object;
 }
 
+json::Value edge_object(const perception::RoadEdge& e) {
+  json::Value object;
+  object["id"] = e.edge_id();
+  object["side"] = side_word(e);
+  object["update"] = e.update() == perception::MEASURED ? "measured" : "predicted";
+  object["age_s"] = json::shortest(e.age_s());
+  object["time_since_update_s"] = json::shortest(e.time_since_update_s());
+  object["existence_probability"] = json::shortest(e.existence_probability());
+  object["start_x_m"] = json::shortest(e.start_x_m());
+  object["end_x_m"] = json::shortest(e.end_x_m());
+  object["scatter_std_m"] = json::shortest(e.scatter_std_m());
+  object["coefficients"] = numbers_of(e.coefficients());
+  object["covariance"] = numbers_of(e.covariance());
+  object["detections"] = e.number_of_detections();
+  return object;
+}
+
+json::Value path_object(const perception::PathObject& o) {
+  json::Value object;
+  object["id"] = o.object_id();
+  object["kind"] = o.kind() == perception::TRACKED_OBJECT ? "track" : "obstacle";
+  object["update"] = o.update() == perception::MEASURED ? "measured" : "predicted";
+  object["warning"] = o.warning() != 0;
+  object["age_s"] = json::shortest(o.age_s());
+  object["existence_probability"] = json::shortest(o.existence_probability());
+  object["collision_probability"] = json::shortest(o.collision_probability());
+  object["time_to_collision_s"] = json::shortest(o.time_to_collision_s());
+  object["time_to_collision_std_s"] = json::shortest(o.time_to_collision_std_s());
+  object["required_deceleration_mps2"] = json::shortest(o.required_deceleration_mps2());
+  object["path_offset_m"] = json::shortest(o.path_offset_m());
+  object["path_offset_std_m"] = json::shortest(o.path_offset_std_m());
+  object["length_m"] = json::shortest(o.length_m());
+  object["width_m"] = json::shortest(o.width_m());
+  object["position_vehicle_m"] = numbers_of(o.position_vehicle_m());
+  object["velocity_over_ground_mps"] = numbers_of(o.velocity_over_ground_mps());
+  object["position_covariance_m2"] = numbers_of(o.position_covariance_m2());
+  return object;
+}
+
 }  // namespace
 
 std::string to_lines(const perception::TrackList& list) {
@@ -89,6 +150,8 @@ std::string to_lines(const perception::TrackList& list) {
                                   shown_time(list.time_ns()), text::printable(list.vehicle_name()),
                                   list.tracks().size(), list.number_of_confirmed_tracks(), list.radar_id());
   for (const perception::Track& track : list.tracks()) lines += "\n" + track_line(track);
+  for (const perception::RoadEdge& edge : list.road_edges()) lines += "\n" + edge_line(edge);
+  for (const perception::PathObject& object : list.path_objects()) lines += "\n" + object_line(object);
   return lines;
 }
 
@@ -115,6 +178,12 @@ std::string to_json(const perception::TrackList& list) {
   object["likelihood_evaluations"] = list.likelihood_evaluations();
   json::Value& tracks = object["tracks"] = json::Value::array();
   for (const perception::Track& track : list.tracks()) tracks.push_back(track_object(track));
+  json::Value& edges = object["road_edges"] = json::Value::array();
+  for (const perception::RoadEdge& edge : list.road_edges()) edges.push_back(edge_object(edge));
+  object["collision_warnings"] = list.number_of_collision_warnings();
+  object["dropped_path_objects"] = list.dropped_path_objects();
+  json::Value& objects = object["path_objects"] = json::Value::array();
+  for (const perception::PathObject& o : list.path_objects()) objects.push_back(path_object(o));
   return json::line(object);
 }
 

@@ -134,6 +134,41 @@ void append_tracks(std::string& rows, const ScanResult& result) {
   }
 }
 
+void append_road_edges(std::string& rows, const ScanResult& result) {
+  const std::size_t count = std::min<std::size_t>(result.tracks.number_of_road_edges, kMaxRoadEdges);
+  for (std::size_t i = 0; i < count; ++i) {
+    const RoadEdge& edge = result.tracks.road_edges[i];
+    CsvRow row = begin_row(rows, result);
+    row.number(edge.edge_id).word(word_of(kSideWords, edge.side)).word(word_of(kUpdateWords, edge.update));
+    row.number(edge.existence_probability).number(edge.age_s).number(edge.time_since_update_s);
+    row.number(edge.start_x_m).number(edge.end_x_m);
+    for (const float coefficient : edge.coefficients) row.number(coefficient);
+    row.number(edge.scatter_std_m).number(edge.number_of_detections);
+    for (std::size_t a = 0; a < kRoadEdgeStateSize; ++a) {
+      for (std::size_t b = a; b < kRoadEdgeStateSize; ++b) row.number(edge.covariance[a * kRoadEdgeStateSize + b]);
+    }
+    row.end();
+  }
+}
+
+void append_collision_warnings(std::string& rows, const ScanResult& result) {
+  const std::size_t count = std::min<std::size_t>(result.tracks.number_of_path_objects, kMaxPathObjects);
+  for (std::size_t i = 0; i < count; ++i) {
+    const PathObject& object = result.tracks.path_objects[i];
+    CsvRow row = begin_row(rows, result);
+    row.word(word_of(kPathObjectWords, object.kind)).number(object.object_id);
+    row.number(static_cast<std::uint32_t>(object.warning)).word(word_of(kUpdateWords, object.update));
+    row.number(object.age_s).number(object.existence_probability).number(object.collision_probability);
+    row.number(object.time_to_collision_s).number(object.time_to_collision_std_s);
+    row.number(object.required_deceleration_mps2).number(object.path_offset_m).number(object.path_offset_std_m);
+    row.number(object.length_m).number(object.width_m);
+    for (const float position_m : object.position_vehicle_m) row.number(position_m);
+    for (const float velocity_mps : object.velocity_over_ground_mps) row.number(velocity_mps);
+    for (const float covariance_m2 : object.position_covariance_m2) row.number(covariance_m2);
+    row.end();
+  }
+}
+
 void append_estimate(std::string& rows, const EstimateResult& result) {
   const AlignmentEstimate& message = result.message;
   CsvRow row(rows);

@@ -24,6 +24,13 @@ inline constexpr std::string_view kTracksHeader =
     "p_two_wheeler,p_pedestrian,p_van,flags,age_s,since_update_s,x_vehicle_m,y_vehicle_m,z_vehicle_m,"
     "vx_over_ground_mps,vy_over_ground_mps,heading_rad,length_m,width_m,height_m,heading_std_rad,length_std_m,"
     "width_std_m,detections,cov_x_x,cov_x_y,cov_x_vx,cov_x_vy,cov_y_y,cov_y_vx,cov_y_vy,cov_vx_vx,cov_vx_vy,cov_vy_vy";
+inline constexpr std::string_view kRoadEdgesHeader =
+    "t_s,time_ns,radar,scan,id,side,update,existence,age_s,since_update_s,start_x_m,end_x_m,c0_m,c1,c2_per_m,"
+    "scatter_std_m,detections,cov_0_0,cov_0_1,cov_0_2,cov_1_1,cov_1_2,cov_2_2";
+inline constexpr std::string_view kCollisionWarningsHeader =
+    "t_s,time_ns,radar,scan,kind,id,warning,update,age_s,existence,collision_probability,time_to_collision_s,"
+    "time_to_collision_std_s,required_deceleration_mps2,path_offset_m,path_offset_std_m,length_m,width_m,x_vehicle_m,"
+    "y_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,cov_x_x,cov_x_y,cov_y_y";
 inline constexpr std::string_view kAlignmentHeader =
     "t_s,time_ns,radar,state,speed_scale,yaw_rad,pitch_rad,roll_rad,rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "cov_k_k,cov_k_x,cov_k_y,cov_k_z,cov_x_x,cov_x_y,cov_x_z,cov_y_y,cov_y_z,cov_z_z,observable,inlier_ratio,"
@@ -40,6 +47,8 @@ void append_scan(std::string& rows, const ScanResult& result);
 void append_detections(std::string& rows, const ScanResult& result);
 void append_reflectors(std::string& rows, const ScanResult& result);
 void append_tracks(std::string& rows, const ScanResult& result);
+void append_road_edges(std::string& rows, const ScanResult& result);
+void append_collision_warnings(std::string& rows, const ScanResult& result);
 void append_estimate(std::string& rows, const EstimateResult& result);
 
 }  // namespace boresight::run

@@ -32,6 +32,10 @@ inline constexpr std::array<std::string_view, 4> kTrackFlagWords = {"out_of_view
 /// By bit of tracker_flag.
 inline constexpr std::array<std::string_view, 3> kTrackerFlagWords = {"work_budget_reached", "capacity_reached",
                                                                       "gates_cut"};
+/// By RoadSide.
+inline constexpr std::array<std::string_view, 2> kSideWords = {"left", "right"};
+/// By PathObjectKind.
+inline constexpr std::array<std::string_view, 2> kPathObjectWords = {"obstacle", "track"};
 /// By AlignmentState.
 inline constexpr std::array<std::string_view, 4> kStateWords = {"no_data", "waiting", "converging", "converged"};
 

@@ -12,11 +12,14 @@ constexpr std::size_t kEnough_bytes = 1 << 16;
 
 Writer::Writer(Put put, VehicleConfig vehicle, bool has_headers) : put_(std::move(put)), vehicle_(std::move(vehicle)) {
   if (has_headers) return;
-  constexpr std::array<std::pair<File, std::string_view>, 5> kHeaders = {{{File::kScans, kScansHeader},
-                                                                          {File::kDetections, kDetectionsHeader},
-                                                                          {File::kReflectors, kReflectorsHeader},
-                                                                          {File::kTracks, kTracksHeader},
-                                                                          {File::kAlignment, kAlignmentHeader}}};
+  constexpr std::array<std::pair<File, std::string_view>, 7> kHeaders = {
+      {{File::kScans, kScansHeader},
+       {File::kDetections, kDetectionsHeader},
+       {File::kReflectors, kReflectorsHeader},
+       {File::kTracks, kTracksHeader},
+       {File::kRoadEdges, kRoadEdgesHeader},
+       {File::kCollisionWarnings, kCollisionWarningsHeader},
+       {File::kAlignment, kAlignmentHeader}}};
   for (const auto& [file, header] : kHeaders) rows(file).append(header).append("\n");
 }
 
@@ -25,6 +28,8 @@ void Writer::write(const ScanResult& result) {
   append_detections(rows(File::kDetections), result);
   append_reflectors(rows(File::kReflectors), result);
   append_tracks(rows(File::kTracks), result);
+  append_road_edges(rows(File::kRoadEdges), result);
+  append_collision_warnings(rows(File::kCollisionWarnings), result);
   hand_over(kEnough_bytes);
 }
 

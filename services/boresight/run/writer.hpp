@@ -12,9 +12,19 @@
 
 namespace boresight::run {
 
-enum class File : std::uint8_t { kScans, kDetections, kReflectors, kTracks, kAlignment, kHealth };
-inline constexpr std::array<std::string_view, 6> kFileNames = {"scans.csv",  "detections.csv", "reflectors.csv",
-                                                               "tracks.csv", "alignment.csv",  "health.jsonl"};
+enum class File : std::uint8_t {
+  kScans,
+  kDetections,
+  kReflectors,
+  kTracks,
+  kRoadEdges,
+  kCollisionWarnings,
+  kAlignment,
+  kHealth
+};
+inline constexpr std::array<std::string_view, 8> kFileNames = {
+    "scans.csv",      "detections.csv",         "reflectors.csv", "tracks.csv",
+    "road_edges.csv", "collision_warnings.csv", "alignment.csv",  "health.jsonl"};
 
 class Writer {
  public:

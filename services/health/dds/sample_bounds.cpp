@@ -65,14 +65,22 @@ constexpr std::size_t kByte = 1, kWord = 4, kDoubleWord = 8;
 template <>
 bool sequences_fit<perception::TrackList>(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kTrackWords = 20 + 6 + 49;  // numbers up to `flags`, class probabilities, covariance
-  constexpr std::uint32_t kMostTracks = 128;
+  constexpr std::size_t kEdgeWords = 22, kObjectWords = 14 + 7;
+  constexpr std::uint32_t kMostTracks = 128, kMostEdges = 4, kMostObjects = 16;
   Walk walk(payload);
   walk.text();                    // vehicle_name
   walk.numbers(2, kDoubleWord);   // times
   walk.numbers(3, kWord);         // time_source, layout_version, radar_id
   walk.numbers(10, kDoubleWord);  // sequence numbers, stages
   walk.numbers(5, kWord);         // number_of_confirmed_tracks to likelihood_evaluations
-  return walk.length(kTrackWords * kWord) <= kMostTracks && walk.is_good();
+  const std::uint32_t tracks = walk.length(kTrackWords * kWord);
+  if (tracks > kMostTracks) return false;
+  walk.numbers(tracks * kTrackWords, kWord);
+  const std::uint32_t edges = walk.length(kEdgeWords * kWord);
+  if (edges > kMostEdges) return false;
+  walk.numbers(edges * kEdgeWords, kWord);
+  walk.numbers(2, kWord);  // number_of_collision_warnings, dropped_path_objects
+  return walk.length(kObjectWords * kWord) <= kMostObjects && walk.is_good();
 }
 
 template <>

@@ -50,7 +50,8 @@ TEST(BoundsOfTracks, AcceptAFullListAndAnEmptyOne) {
 TEST(BoundsOfTracks, RefuseMoreThanWasReceivedAndMoreThanTheCapacity) {
   Bytes bytes = tracks_bytes(1);
   constexpr std::size_t kTrack_bytes = 300;
-  const std::size_t length = bytes.size() - kTrack_bytes - sizeof(std::uint32_t);
+  constexpr std::size_t kBehind_bytes = 4 * sizeof(std::uint32_t);  // two empty sequences and two numbers
+  const std::size_t length = bytes.size() - kBehind_bytes - kTrack_bytes - sizeof(std::uint32_t);
   announce(bytes, length, 2);
   EXPECT_FALSE(sequences_fit<perception::TrackList>(bytes));
   announce(bytes, length, 0xFFFFFFFF);
@@ -60,11 +61,29 @@ TEST(BoundsOfTracks, RefuseMoreThanWasReceivedAndMoreThanTheCapacity) {
   bytes.pop_back();
   EXPECT_FALSE(sequences_fit<perception::TrackList>(bytes)) << "cut";
   Bytes many = tracks_bytes(128);
-  const std::size_t at = many.size() - 128 * kTrack_bytes - sizeof(std::uint32_t);
+  const std::size_t at = many.size() - kBehind_bytes - 128 * kTrack_bytes - sizeof(std::uint32_t);
   many.resize(many.size() + kTrack_bytes);
   announce(many, at, 129);
   EXPECT_FALSE(sequences_fit<perception::TrackList>(many)) << "beyond the capacity";
   EXPECT_FALSE(sequences_fit<perception::TrackList>({}));
+}
+
+TEST(BoundsOfTracks, RefuseEdgesAndObjectsThatWereNotReceived) {
+  perception::TrackList list = tracks_sample(2);
+  list.road_edges().resize(4);
+  list.path_objects().resize(16);
+  const Bytes full = samples::sent<perception::TrackListPubSubType>(list);
+  EXPECT_TRUE(sequences_fit<perception::TrackList>(full));
+  constexpr std::size_t kObject_bytes = 84, kEdge_bytes = 88;
+  const std::size_t objects = full.size() - 16 * kObject_bytes - sizeof(std::uint32_t);
+  const std::size_t edges = objects - 2 * sizeof(std::uint32_t) - 4 * kEdge_bytes - sizeof(std::uint32_t);
+  for (const std::size_t place : {objects, edges}) {
+    Bytes bytes = full;
+    announce(bytes, place, 0x00FFFFFF);
+    EXPECT_FALSE(sequences_fit<perception::TrackList>(bytes)) << place;
+    announce(bytes, place, 17);
+    EXPECT_FALSE(sequences_fit<perception::TrackList>(bytes)) << place;
+  }
 }
 
 TEST(BoundsOfServices, AcceptWhatIsSent) {

@@ -24,6 +24,15 @@ TrackList list_of(std::uint32_t number_of_tracks) {
     track.movement = MovementState::kStationary;
     track.object_class = ObjectClass::kTwoWheeler;
   }
+  list.number_of_road_edges = list.number_of_path_objects = 2;
+  for (RoadEdge& edge : list.road_edges) {
+    edge.side = RoadSide::kRight;
+    edge.update = TrackUpdate::kPredicted;
+  }
+  for (PathObject& object : list.path_objects) {
+    object.kind = PathObjectKind::kTrack;
+    object.update = TrackUpdate::kPredicted;
+  }
   return list;
 }
 
@@ -80,6 +89,39 @@ TEST(TrackListByDds, HasEveryFieldOfEveryTrackInItsPlace) {
     EXPECT_EQ(t.flags(), track.flags);
     EXPECT_EQ(t.class_probability(), track.class_probability);
     EXPECT_EQ(t.covariance(), track.covariance);
+  }
+}
+
+TEST(TrackListByDds, HasTheRoadEdgesAndPathObjects) {
+  const auto list = std::make_unique<TrackList>(list_of(3));
+  const perception::TrackList got = samples::received<perception::TrackListPubSubType>(sample_of(*list));
+  ASSERT_EQ(got.road_edges().size(), 2u);
+  ASSERT_EQ(got.path_objects().size(), 2u);
+  EXPECT_EQ(got.number_of_collision_warnings(), list->number_of_collision_warnings);
+  EXPECT_EQ(got.dropped_path_objects(), list->dropped_path_objects);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const RoadEdge& edge = list->road_edges[i];
+    const perception::RoadEdge& e = got.road_edges()[i];
+    EXPECT_EQ(e.edge_id(), edge.edge_id);
+    EXPECT_EQ(e.side(), perception::RIGHT_SIDE);
+    EXPECT_EQ(e.update(), perception::PREDICTED);
+    EXPECT_EQ(e.existence_probability(), edge.existence_probability);
+    EXPECT_EQ(e.start_x_m(), edge.start_x_m);
+    EXPECT_EQ(e.end_x_m(), edge.end_x_m);
+    EXPECT_EQ(e.coefficients(), edge.coefficients);
+    EXPECT_EQ(e.covariance(), edge.covariance);
+    EXPECT_EQ(e.number_of_detections(), edge.number_of_detections);
+    const PathObject& object = list->path_objects[i];
+    const perception::PathObject& o = got.path_objects()[i];
+    EXPECT_EQ(o.object_id(), object.object_id);
+    EXPECT_EQ(o.kind(), perception::TRACKED_OBJECT);
+    EXPECT_EQ(o.warning(), object.warning);
+    EXPECT_EQ(o.collision_probability(), object.collision_probability);
+    EXPECT_EQ(o.time_to_collision_s(), object.time_to_collision_s);
+    EXPECT_EQ(o.time_to_collision_std_s(), object.time_to_collision_std_s);
+    EXPECT_EQ(o.position_vehicle_m(), object.position_vehicle_m);
+    EXPECT_EQ(o.velocity_over_ground_mps(), object.velocity_over_ground_mps);
+    EXPECT_EQ(o.position_covariance_m2(), object.position_covariance_m2);
   }
 }
 

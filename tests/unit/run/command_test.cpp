@@ -95,7 +95,8 @@ TEST_F(RunCommand, TakesTheTablesOfDecodeInPlaceOfTheRecording) {
   ASSERT_EQ(run("--detections " + detections + " --ego " + ego + " --vehicle demo --out " + path("table").string()), 0)
       << errors_;
   EXPECT_THAT(errors_, HasSubstr("ignored columns: \"cycle\""));
-  for (const char* const name : {"scans.csv", "detections.csv", "reflectors.csv", "tracks.csv", "alignment.csv"}) {
+  for (const char* const name : {"scans.csv", "detections.csv", "reflectors.csv", "tracks.csv", "road_edges.csv",
+                                 "collision_warnings.csv", "alignment.csv"}) {
     EXPECT_TRUE(text("recorded/" + std::string(name)) == text("table/" + std::string(name))) << name;
   }
 }

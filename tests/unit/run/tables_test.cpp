@@ -81,8 +81,8 @@ class RunTables : public ::testing::Test {
   testing::TemporaryFolder folder_{"tables"};
 };
 
-constexpr std::array kTableFiles = {File::kScans, File::kDetections, File::kReflectors, File::kTracks,
-                                    File::kAlignment};
+constexpr std::array kTableFiles = {File::kScans,     File::kDetections,        File::kReflectors, File::kTracks,
+                                    File::kRoadEdges, File::kCollisionWarnings, File::kAlignment};
 
 /// Plays recordings through the chain.
 void play_recordings(const std::vector<std::filesystem::path>& recordings, const VehicleConfig& vehicle,
@@ -262,11 +262,11 @@ TEST_F(RunTables, HaveExactlyTheDocumentedColumnsAndRanges) {
 
 TEST(RunPages, DescribeExactlyTheColumnsThatAreWritten) {
   const auto sections = schema_page::sections(page_of("run.md"));
-  const std::map<std::string, std::string_view> headers = {{"scans.csv", kScansHeader},
-                                                           {"detections.csv", kDetectionsHeader},
-                                                           {"reflectors.csv", kReflectorsHeader},
-                                                           {"tracks.csv", kTracksHeader},
-                                                           {"alignment.csv", kAlignmentHeader}};
+  const std::map<std::string, std::string_view> headers = {
+      {"scans.csv", kScansHeader},           {"detections.csv", kDetectionsHeader},
+      {"reflectors.csv", kReflectorsHeader}, {"tracks.csv", kTracksHeader},
+      {"road_edges.csv", kRoadEdgesHeader},  {"collision_warnings.csv", kCollisionWarningsHeader},
+      {"alignment.csv", kAlignmentHeader}};
   for (const auto& [file, header] : headers) {
     ASSERT_TRUE(sections.contains(file)) << file;
     std::string documented;
