@@ -64,7 +64,7 @@ Sums sums_of(const Scenario& scenario, double duration_s) {
   return sums;
 }
 
-/// Recorded before there were profiles: the first two seconds of each shipped scenario with seed 3.
+/// Recorded before there were profiles: the first two seconds of each scenario that was shipped then, with seed 3.
 struct Before {
   const char* scenario;
   std::size_t detections;
@@ -83,8 +83,7 @@ constexpr std::array<Before, 11> kBefore = {
      {"truck_overtaking", 13557, 538435.8232, 195.088743, -5997.2455, -30268.0},
      {"tunnel", 14170, 584117.6082, -11.979449, -51120.6028, -45034.0}}};
 
-TEST(IdealProfile, IsTodaysOutputOfEveryShippedScenario) {
-  EXPECT_EQ(kBefore.size(), scenario_names().size());
+TEST(IdealProfile, IsTodaysOutputOfTheScenariosThatAreOlder) {
   for (const Before& before : kBefore) {
     const Sums now = sums_of(scenario_with(before.scenario, "ideal"), 2.0);
     EXPECT_EQ(now.detections, before.detections) << before.scenario;

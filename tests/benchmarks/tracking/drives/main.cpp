@@ -42,6 +42,8 @@ struct Arguments {
 std::vector<std::string> scenarios_with_moving_objects() {
   std::vector<std::string> names = simulator::scenario_names();
   std::erase_if(names, [](const std::string& name) {
+    // Those of the collision warnings are judged by boresight-bench-tracking_surroundings.
+    if (name == "stopped_car" || name == "crossing_pedestrian" || name == "parked_row_in_curve") return true;
     const simulator::Scenario scenario = simulator::scenario(name);
     return std::all_of(scenario.bodies.begin(), scenario.bodies.end(), [](const auto& body) { return body.parked; });
   });

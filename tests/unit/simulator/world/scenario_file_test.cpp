@@ -156,7 +156,8 @@ TEST(ScenarioFile, RefusesContradictions) {
 TEST(ScenarioFile, ShippedScenariosAreFoundByNameAndOwnOnesByPath) {
   const auto names = scenario_names();
   for (const char* name : {"demo_drive", "aligned_drive", "straight_rail", "highway_multipath", "tunnel", "city_canyon",
-                           "parking_garage", "truck_overtaking", "curve_with_rail", "junction", "motorway_braking"}) {
+                           "parking_garage", "truck_overtaking", "curve_with_rail", "junction", "motorway_braking",
+                           "stopped_car", "crossing_pedestrian", "parked_row_in_curve"}) {
     EXPECT_THAT(names, Contains(name));
   }
   for (const std::string& name : names) {
