@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "services/tracker/core/classical/parameters.hpp"
 #include "services/tracker/core/classes/object_forest.hpp"
+#include "services/tracker/core/classical/parameters.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"

@@ -7,10 +7,10 @@ namespace boresight::tracking::classical {
 
 namespace {
 
-// Of MotionState: x, v_x, a_x, y, v_y, a_y.
 /// Of a velocity that nothing is known of, m²/s².
 constexpr double kUnknownVariance = 1e8;
-constexpr Eigen::Index kX = 0, kVx = 1, kAx = 2, kY = 3, kVy = 4, kAy = 5;
+/// Of MotionState.
+enum StateIndex : Eigen::Index { kX, kVx, kAx, kY, kVy, kAy };
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Heading of a box from the outline of its detections: L-shape fitting by a search of the direction (Zhang, Xu, Dong
-// and Dolan 2017).
+// Heading of a box from the outline of its detections: L-shape fitting by a search of the direction (Zhang et
+// al. 2017).
 //
 // For each direction θ in [0, π/2) the detections have the coordinates c₁ = p·(cos θ, sin θ) and c₂ = p·(−sin θ, cos
 // θ). The two faces that the sensor sees are the nearer ends of both coordinates. With D₁ and D₂ the distances of a
