@@ -244,7 +244,7 @@ add_values("health",
            ("directory", '"keys"', "dds.security.directory"), ("directory", '"/absent"', None), ("governance", "5", "dds.security.governance"))
 add_values("tracker",
            ("probability", "nan", "detection.probability"), ("probability", "0", "detection.probability"),
-           ("confirmed_existence", "0.03", "report.confirmed_existence"),
+           ("confirmed_existence", "0.015", "report.confirmed_existence"),
            ("group_objects", "250", None), ("group_objects", "257", "capacity.group_objects"),
            ("band_half_width_m", "nan", "road_edge.band_half_width_m"), ("warning_probability", "0", "collision.warning_probability"),
            ("corridor_m", "0", "path_obstacle.corridor_m"), ("tracker", '"pmbmm"', "tracker"))

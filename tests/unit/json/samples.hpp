@@ -247,6 +247,28 @@ inline std::vector<std::string> track_lists() {
   fill_with_nothing(track.position_vehicle_m(), track.velocity_over_ground_mps(), track.class_probability(),
                     track.covariance());
   list.tracks() = {perception::Track(), track};
+  perception::RoadEdge edge;
+  edge.age_s(nothing);
+  edge.time_since_update_s(nothing);
+  edge.existence_probability(nothing);
+  edge.start_x_m(nothing);
+  edge.end_x_m(nothing);
+  edge.scatter_std_m(nothing);
+  fill_with_nothing(edge.coefficients(), edge.covariance());
+  list.road_edges() = {perception::RoadEdge(), edge};
+  perception::PathObject object;
+  object.age_s(nothing);
+  object.existence_probability(nothing);
+  object.collision_probability(nothing);
+  object.time_to_collision_s(nothing);
+  object.time_to_collision_std_s(nothing);
+  object.required_deceleration_mps2(nothing);
+  object.path_offset_m(nothing);
+  object.path_offset_std_m(nothing);
+  object.length_m(nothing);
+  object.width_m(nothing);
+  fill_with_nothing(object.position_vehicle_m(), object.velocity_over_ground_mps(), object.position_covariance_m2());
+  list.path_objects() = {perception::PathObject(), object};
   return {diagnostics_text::to_json(list)};
 }
 

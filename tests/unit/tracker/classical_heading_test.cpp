@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "services/common/geometry/frames.hpp"
@@ -58,8 +59,8 @@ double error(const Heading& heading, double truth_rad) {
   return geometry::wrap_angle(heading.rad - truth_rad);
 }
 
-TEST(LShape, FindsTheAxesOfACornerByEachCriterion) {
-  for (const auto criterion : {ShapeCriterion::kArea, ShapeCriterion::kCloseness, ShapeCriterion::kVariance}) {
+TEST(LShape, FindsTheAxesOfACorner) {
+  for (const auto criterion : {ShapeCriterion::kCloseness, ShapeCriterion::kVariance}) {
     ShapeParameters parameters;
     parameters.criterion = criterion;
     for (const double heading_deg : {-60.0, -17.0, 0.0, 25.0, 71.0, 140.0}) {
@@ -70,6 +71,16 @@ TEST(LShape, FindsTheAxesOfACornerByEachCriterion) {
       EXPECT_LT(std::abs(error(*found, heading)), 5.0 * kDegree_rad) << heading_deg;
     }
   }
+}
+
+TEST(LShape, AreaFindsAnAxisOrTheLineBetweenTheEndsOfTheCorner) {
+  // The smallest rectangle about a triangle has the same area along each of its sides.
+  ShapeParameters parameters;
+  parameters.criterion = ShapeCriterion::kArea;
+  const auto found = l_shape_heading(outline({12.0, 6.0}, 0.0, 0.02, 24, 3), 0.0, parameters);
+  ASSERT_TRUE(found);
+  const double off = std::abs(error(*found, 0.0)), diagonal = std::atan2(1.8, 4.6);
+  EXPECT_LT(std::min(off, std::abs(off - diagonal)), 5.0 * kDegree_rad);
 }
 
 TEST(LShape, TurnsWithTheScene) {
