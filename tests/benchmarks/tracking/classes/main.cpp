@@ -4,14 +4,12 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
 #include "tests/benchmarks/tracking/classes/judge/class_judge.hpp"
 #include "tests/benchmarks/tracking/classes/runs/classified_drive.hpp"
@@ -36,23 +34,9 @@ struct Arguments {
   std::string config{BORESIGHT_SOURCE_DIR "/config"}, json;
 };
 
-std::vector<std::string> scenarios_with_moving_objects() {
-  std::vector<std::string> names = simulator::scenario_names();
-  std::erase_if(names, [](const std::string& name) {
-    const simulator::Scenario scenario = simulator::scenario(name);
-    return std::all_of(scenario.bodies.begin(), scenario.bodies.end(), [](const auto& body) { return body.parked; });
-  });
-  return names;
-}
-
-/// Far from every seed that a person types, or that the forest is grown on.
-std::uint64_t draw_seed() {
-  return 1'000'000 + 1'000 * (std::random_device{}() % 1'000'000);
-}
-
 ClassJudge judge_of(const Arguments& arguments, const std::string& tracker, const std::string& profile,
                     std::vector<std::string>& names) {
-  std::vector<ClassifiedDrive> drives;
+  std::vector<SimulatedDrive> drives;
   for (const std::string& scenario : arguments.scenarios) {
     for (std::size_t s = 0; s < arguments.seeds; ++s) {
       drives.push_back({scenario, profile, arguments.first_seed + s, arguments.longest_s, tracker});

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -14,13 +13,13 @@
 #include <fmt/format.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
 #include "tests/benchmarks/tracking/drives/perfect/perfect_run.hpp"
 #include "tests/benchmarks/tracking/drives/report/findings.hpp"
 #include "tests/benchmarks/tracking/drives/runs/drive_folder.hpp"
 #include "tests/benchmarks/tracking/drives/runs/place.hpp"
 #include "tests/benchmarks/tracking/drives/runs/run_reader.hpp"
+#include "tests/benchmarks/tracking/simulated/simulated_chain.hpp"
 
 namespace {
 
@@ -38,22 +37,6 @@ struct Arguments {
   bool quick = false, keeps_all = false, runs_again = false;
   std::string keep, programs, config{BORESIGHT_SOURCE_DIR "/config"}, only, json;
 };
-
-std::vector<std::string> scenarios_with_moving_objects() {
-  std::vector<std::string> names = simulator::scenario_names();
-  std::erase_if(names, [](const std::string& name) {
-    // Those of the collision warnings are judged by boresight-bench-tracking_surroundings.
-    if (name == "stopped_car" || name == "crossing_pedestrian" || name == "parked_row_in_curve") return true;
-    const simulator::Scenario scenario = simulator::scenario(name);
-    return std::all_of(scenario.bodies.begin(), scenario.bodies.end(), [](const auto& body) { return body.parked; });
-  });
-  return names;
-}
-
-/// Far from every seed that a person types.
-std::uint64_t draw_seed() {
-  return 1'000'000 + 1'000 * (std::random_device{}() % 1'000'000);
-}
 
 /// Drives that are there come first, unless the first seed is given.
 std::vector<DriveSpec> drives_of(const Arguments& arguments, const DriveSetup& setup, const std::string& profile,

@@ -1,16 +1,10 @@
 #include "tests/benchmarks/tracking/classes/runs/classified_drive.hpp"
 
-#include <algorithm>
-#include <memory>
 #include <utility>
+#include <vector>
 
-#include "services/boresight/run/chain.hpp"
-#include "services/boresight/run/settings.hpp"
-#include "services/simulator/drive.hpp"
 #include "services/simulator/judge/hidden.hpp"
 #include "services/simulator/judge/matching.hpp"
-#include "services/simulator/scenario/read_profile.hpp"
-#include "services/simulator/scenario_file.hpp"
 #include "tests/closed_loop/objects.hpp"
 
 namespace boresight::bench::tracking {
@@ -18,8 +12,6 @@ namespace boresight::bench::tracking {
 using extended_object::RoadUserClass;
 
 namespace {
-
-constexpr const char* kVehicle = "demo";
 
 [[nodiscard]] RoadUserClass class_of(simulator::BodyKind kind) {
   switch (kind) {
@@ -78,31 +70,10 @@ class DriveOfClasses {
 
 }  // namespace
 
-ClassJudge judge_drive(const ClassifiedDrive& of, const std::filesystem::path& config) {
-  runtime::Configuration configuration;
-  configuration.directory = config;
-  configuration.vehicle_name = kVehicle;
-  configuration.statistics = of.profile;
-  const VehicleConfig vehicle = configuration.vehicle(config::VehicleUse::kOffline);
-  run::Settings settings = run::read_settings(configuration, vehicle);
-  if (!of.tracker.empty()) settings.tracker.tracker = of.tracker;
-  simulator::Scenario scenario = simulator::scenario(of.scenario);
-  simulator::use_profile(scenario, of.profile);
-  const double duration_s = of.longest_s > 0.0 ? std::min(of.longest_s, scenario.duration_s) : scenario.duration_s;
-  simulator::Drive drive(scenario, vehicle, of.seed, duration_s);
-  run::Chain chain(vehicle, settings);
-  DriveOfClasses judged(drive);
-  const auto scan = std::make_unique<RadarScan>();
-  while (const simulator::Event* event = drive.next()) {
-    chain.advance(event->stamp_ns);
-    if (event->scan == nullptr) {
-      EgoMotion motion = simulator::to_message(*event, vehicle.ego);
-      chain.add_ego(motion, event->stamp_ns);
-      continue;
-    }
-    *scan = *event->scan;
-    if (chain.add_scan(*scan, event->stamp_ns)) judged.add(*event, chain.tracks());
-  }
+ClassJudge judge_drive(const SimulatedDrive& of, const std::filesystem::path& config) {
+  SimulatedChain chain(of, config);
+  DriveOfClasses judged(chain.drive());
+  chain.play([&](const simulator::Event& event, const run::Chain& played) { judged.add(event, played.tracks()); });
   return judged.finish();
 }
 
