@@ -81,7 +81,7 @@ void add(const std::string& tracker, const std::string& profile, const ClassJudg
        fmt::format("≤ {}", kMostError), f.calibration.largest <= kMostError});
 }
 
-int run(Arguments arguments) {
+int judge_all(Arguments arguments) {
   if (arguments.first_seed == 0) arguments.first_seed = draw_seed();
   std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(arguments.first_seed),
               static_cast<unsigned long long>(arguments.first_seed + arguments.seeds - 1));
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
       arguments.seeds = 1;
       arguments.longest_s = 6.0;
     }
-    return run(arguments);
+    return judge_all(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kError;

@@ -109,7 +109,7 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
   return contestants;
 }
 
-int run(const Arguments& arguments) {
+int judge_all(const Arguments& arguments) {
   const Place place("boresight_tracking_drives", arguments.keep);
   DriveSetup setup;
   setup.programs = arguments.programs;
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
       arguments.seeds = 1;
       arguments.longest_s = 4.0;
     }
-    return run(arguments);
+    return judge_all(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kError;

@@ -69,7 +69,7 @@ void add(const std::string& profile, const HeadingJudge& judge, Findings& findin
   }
 }
 
-int run(Arguments arguments) {
+int judge_all(Arguments arguments) {
   if (arguments.first_seed == 0) arguments.first_seed = draw_seed();
   std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(arguments.first_seed),
               static_cast<unsigned long long>(arguments.first_seed + arguments.seeds - 1));
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
       arguments.seeds = 1;
       arguments.longest_s = 6.0;
     }
-    return run(arguments);
+    return judge_all(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kError;

@@ -25,7 +25,8 @@ const ObjectEstimate* track_at(const judge::Object& object, const RadarModel& mo
   for (const ObjectEstimate& e : filter.estimates()) {
     if (e.existence < kLeastExistence) continue;
     const Eigen::Vector2d centre = model.box(*e.component).centre_m;
-    const boresight::tracking::Vector2<double> at = model.axes().to_vehicle({centre.x(), centre.y()});
+    const boresight::tracking::Vector2<double> at =
+        model.axes().to_vehicle(boresight::tracking::Vector2<double>{centre.x(), centre.y()});
     const double distance_m = object.distance_m({at.x, at.y});
     if (distance_m > least_m) continue;
     least_m = distance_m;
