@@ -259,14 +259,16 @@ void read_capacity(config::Reader table, pmbm::Capacity& c) {
 
 void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
   StationaryParameters& s = p.stationary;
-  read(root.table("surroundings"), {{"memory_s", &s.memory_s, {0.05, 5.0}},
-                                    {"least_probability", &s.least_probability, {0.0, 1.0}},
-                                    {"behind_m", &s.behind_m, {0.0, 50.0}},
-                                    {"ahead_m", &s.ahead_m, {10.0, 150.0}},
-                                    {"aside_m", &s.aside_m, {2.0, 50.0}},
-                                    {"lowest_m", &s.lowest_m, {-5.0, 5.0}},
-                                    {"highest_m", &s.highest_m, {0.5, 10.0}},
-                                    {"mounting_std_rad", &s.mounting_std_rad, {0.0, 0.1}}});
+  config::Reader stationary = root.table("surroundings");
+  read(stationary, {{"memory_s", &s.memory_s, {0.05, 5.0}},
+                    {"least_probability", &s.least_probability, {0.0, 1.0}},
+                    {"behind_m", &s.behind_m, {0.0, 50.0}},
+                    {"ahead_m", &s.ahead_m, {10.0, 150.0}},
+                    {"aside_m", &s.aside_m, {2.0, 50.0}},
+                    {"lowest_m", &s.lowest_m, {-5.0, 5.0}},
+                    {"highest_m", &s.highest_m, {0.5, 10.0}},
+                    {"mounting_std_rad", &s.mounting_std_rad, {0.0, 0.1}}});
+  s.scans_per_look = static_cast<int>(stationary.integer("scans_per_look", {1, 100}, s.scans_per_look));
   RoadEdgeParameters& e = p.road_edge;
   read(root.table("road_edge"), {{"gate_sigma", &e.gate_sigma, {1.0, 10.0}},
                                  {"ahead_m", &e.ahead_m, {10.0, 150.0}},
@@ -286,6 +288,7 @@ void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
                                  {"longest_coast_s", &e.longest_coast_s, {0.05, 20.0}},
                                  {"scatter_m", &e.scatter_m, {0.001, 1.0}},
                                  {"scatter_memory_s", &e.scatter_memory_s, {0.05, 100.0}},
+                                 {"least_weight", &e.least_weight, {0.0, 0.5}},
                                  {"repeat_factor", &e.repeat_factor, {1.0, 1000.0}},
                                  {"offset_density_m2pm", &e.offset_density_m2pm, {0.0, 1.0}},
                                  {"slope_density_pm", &e.slope_density_pm, {0.0, 0.01}},
@@ -295,29 +298,31 @@ void read_surroundings(config::Reader& root, SurroundingsParameters& p) {
                                  {"course_existence", &e.course_existence, {0.0, 1.0}},
                                  {"course_beyond_m", &e.course_beyond_m, {0.0, 100.0}}});
   ObstacleParameters& o = p.obstacle;
-  read(root.table("path_obstacle"), {{"corridor_m", &o.corridor_m, {0.5, 10.0}},
-                                     {"cluster_radius_m", &o.cluster_radius_m, {0.1, 10.0}},
-                                     {"least_detections", &o.least_detections, {1.0, 500.0}},
-                                     {"gate_m", &o.gate_m, {0.1, 10.0}},
-                                     {"count", &o.count, {0.01, 100.0}},
-                                     {"count_range_m", &o.count_range_m, {1.0, 300.0}},
-                                     {"count_power", &o.count_power, {0.0, 4.0}},
-                                     {"background_count", &o.background_count, {0.001, 10.0}},
-                                     {"background_factor", &o.background_factor, {0.0, 100.0}},
-                                     {"background_memory_s", &o.background_memory_s, {0.1, 100.0}},
-                                     {"excess_db", &o.excess_db, {0.0, 60.0}},
-                                     {"excess_std_db", &o.excess_std_db, {1.0, 60.0}},
-                                     {"level_memory_s", &o.level_memory_s, {0.1, 1000.0}},
-                                     {"level_range_m", &o.level_range_m, {5.0, 100.0}},
-                                     {"most_of_scan", &o.most_of_scan, {0.1, 100.0}},
-                                     {"evidence_share", &o.evidence_share, {0.001, 1.0}},
-                                     {"prior_log_odds", &o.prior_log_odds, {-50.0, 0.0}},
-                                     {"most_log_odds", &o.most_log_odds, {0.0, 50.0}},
-                                     {"end_log_odds", &o.end_log_odds, {-50.0, 50.0}},
-                                     {"position_density_m2ps", &o.position_density_m2ps, {0.0, 10.0}},
-                                     {"centre_std_m", &o.centre_std_m, {0.01, 5.0}},
-                                     {"extent_memory_s", &o.extent_memory_s, {0.05, 20.0}},
-                                     {"life_s", &o.life_s, {0.05, 20.0}}});
+  config::Reader obstacle = root.table("path_obstacle");
+  read(obstacle, {{"corridor_m", &o.corridor_m, {0.5, 10.0}},
+                  {"cluster_radius_m", &o.cluster_radius_m, {0.1, 10.0}},
+                  {"least_detections", &o.least_detections, {1.0, 500.0}},
+                  {"gate_m", &o.gate_m, {0.1, 10.0}},
+                  {"count", &o.count, {0.01, 100.0}},
+                  {"count_range_m", &o.count_range_m, {1.0, 300.0}},
+                  {"count_power", &o.count_power, {0.0, 4.0}},
+                  {"background_count", &o.background_count, {0.001, 10.0}},
+                  {"background_factor", &o.background_factor, {0.0, 100.0}},
+                  {"background_memory_s", &o.background_memory_s, {0.1, 100.0}},
+                  {"excess_db", &o.excess_db, {0.0, 60.0}},
+                  {"excess_std_db", &o.excess_std_db, {1.0, 60.0}},
+                  {"level_memory_s", &o.level_memory_s, {0.1, 1000.0}},
+                  {"level_range_m", &o.level_range_m, {5.0, 100.0}},
+                  {"most_of_scan", &o.most_of_scan, {0.1, 100.0}},
+                  {"evidence_share", &o.evidence_share, {0.001, 1.0}},
+                  {"prior_log_odds", &o.prior_log_odds, {-50.0, 0.0}},
+                  {"most_log_odds", &o.most_log_odds, {0.0, 50.0}},
+                  {"end_log_odds", &o.end_log_odds, {-50.0, 50.0}},
+                  {"position_density_m2ps", &o.position_density_m2ps, {0.0, 10.0}},
+                  {"centre_std_m", &o.centre_std_m, {0.01, 5.0}},
+                  {"extent_memory_s", &o.extent_memory_s, {0.05, 20.0}},
+                  {"life_s", &o.life_s, {0.05, 20.0}}});
+  o.looks_per_search = static_cast<int>(obstacle.integer("looks_per_search", {1, 100}, o.looks_per_search));
   CollisionParameters& c = p.collision;
   read(root.table("collision"), {{"front_m", &c.front_m, {0.1, 20.0}},
                                  {"width_m", &c.width_m, {0.5, 4.0}},

@@ -8,7 +8,7 @@
 
 namespace boresight::tracking::filters {
 
-/// What drives the motion of an object at random.
+/// Process noise: white jerk changes the acceleration, which fades with time.
 struct ProcessNoise {
   double jerk_density_m2ps5 = 1.0;                                        ///< of white jerk, the same along each axis
   double acceleration_decay_s = std::numeric_limits<double>::infinity();  ///< infinite: accelerations last

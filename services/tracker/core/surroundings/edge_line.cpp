@@ -8,8 +8,6 @@ namespace boresight::tracking {
 
 namespace {
 
-/// A detection with a smaller probability of lying on the line says nothing about the line.
-constexpr double kLeastWeight = 0.05;
 /// The x of the line's place that lies at x = 0 of axes turned by `yaw_rad`: cos·x + sin·y(x) = 0, by Newton's method.
 double abeam(const Eigen::Vector3d& c, double yaw_rad) {
   constexpr int kSteps = 3;
@@ -65,7 +63,7 @@ EdgeEvidence EdgeLine::update(std::span<const StationaryPoint> points, double si
         densities.on * std::exp(-0.5 * residual * residual / spread) / std::sqrt(2.0 * std::numbers::pi * spread);
     const double beside = residual * side < 0.0 ? densities.inner_per_m : densities.outer_per_m;
     const double weight = on / (on + beside);
-    if (!(weight > kLeastWeight)) continue;
+    if (!(weight > parameters.least_weight)) continue;
     const Eigen::Vector3d h = basis(x);
     const double precision = weight / (noise * parameters.repeat_factor);
     information += precision * h * h.transpose();

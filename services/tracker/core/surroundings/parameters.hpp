@@ -13,6 +13,7 @@ struct StationaryParameters {
   double lowest_m = -0.5;            ///< height of a detection, where elevation is measured
   double highest_m = 2.5;            ///< above it is a structure that the vehicle passes under
   double mounting_std_rad = 0.0015;  ///< error of all azimuths of a radar that its alignment leaves
+  int scans_per_look = 2;            ///< the memory is looked at in each such scan
 };
 
 struct RoadEdgeParameters {
@@ -34,6 +35,7 @@ struct RoadEdgeParameters {
   double longest_coast_s = 1.0;          ///< without a segment
   double scatter_m = 0.1;                ///< start: standard deviation of reflections across the line
   double scatter_memory_s = 2.0;         ///< of the learnt one
+  double least_weight = 0.05;            ///< a detection that is less likely on the line tells nothing of the line
   double repeat_factor = 8.0;            ///< detections of one reflector that count as one measurement of the line
   double offset_density_m2pm = 1e-4;     ///< how the line departs from a parabola, by metre driven
   double slope_density_pm = 1e-6;        //
@@ -69,6 +71,7 @@ struct ObstacleParameters {
   double centre_std_m = 0.6;            ///< of a detection about the obstacle's centre
   double extent_memory_s = 1.0;         ///< of the extent
   double life_s = 1.5;                  ///< without detections
+  int looks_per_search = 3;             ///< new obstacles are looked for in each such look at the memory
 };
 
 struct CollisionParameters {

@@ -11,7 +11,6 @@ namespace boresight::tracking {
 namespace {
 
 constexpr std::size_t kMaxPlaces = 512;               // of the memory that are clustered
-constexpr std::uint32_t kLooksPerSearch = 3;          // new obstacles are looked for in each such look of the memory
 constexpr double kUniformHalf = std::numbers::sqrt3;  // half width of a uniform density by its standard deviation
 
 /// Whether a place lies within a distance of the path: (W1) solved for the numerator, without its root.
@@ -51,7 +50,8 @@ void PathObstacles::step(const ClassifiedScan& scan, const StationaryMemory& mem
   for (std::size_t k = 0; k < obstacles_.size(); ++k) update(obstacles_[k], memory, k, elapsed_s);
   drop();
   learn_density(memory, path, radars_[static_cast<std::size_t>(memory.radar())], elapsed_s);
-  if (!memory.places().empty() && scans_++ % kLooksPerSearch == 0) start(memory, path);
+  if (!memory.places().empty() && scans_++ % static_cast<std::uint32_t>(parameters_.looks_per_search) == 0)
+    start(memory, path);
 }
 
 void PathObstacles::move(const geometry::EgoStep& step, double elapsed_s) {

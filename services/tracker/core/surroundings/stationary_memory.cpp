@@ -7,10 +7,6 @@
 
 namespace boresight::tracking {
 
-namespace {
-constexpr std::uint32_t kScansPerLook = 2;  // the memory is looked at in each such scan
-}  // namespace
-
 StationaryMemory::StationaryMemory(const VehicleConfig& vehicle, const StationaryParameters& parameters,
                                    const ObstacleParameters& strengths)
     : parameters_(parameters), strengths_(strengths) {
@@ -110,7 +106,7 @@ void StationaryMemory::step(const ClassifiedScan& scan, const geometry::EgoStep&
     next_ = (next_ + 1) % kCapacity;
   }
   places_.clear();
-  if (radar_ < 0 || scans_ % kScansPerLook != 0) return;
+  if (radar_ < 0 || scans_ % static_cast<std::uint32_t>(parameters_.scans_per_look) != 0) return;
   for (const Remembered& r : ring_) {
     if (newest_s_ - r.time_s > parameters_.memory_s) continue;
     const Eigen::Vector2d d = r.standing_m - axes_.position_m;
